@@ -65,8 +65,8 @@ def test_lists_of_heights_follow_their_heading(tmp_path, head, order, factors, f
         ("x [mm],y [mm],z [s]\n", (None, None), ReadError, 'the column "z .s." is not in a unit like m'),
         ("x [mm],x [mm],z [um]\n", (None, None), ReadError, 'the heading has the columns "x .mm.", "x .mm."'),
         ("x,y,z,intensity\n", ("mm", "um"), ReadError, 'of which "intensity" is unknown'),
-        ("all units: inch\nplate\n", ("mm", "um"), ReadError, 'line 1: "all units: inch" speaks of units'),
-        ("# heights in [in]\n", ("mm", "um"), ReadError, "speaks of units in words"),
+        ("all units: inch\nplate\n", ("mm", "um"), ReadError, 'line 1: "all units: inch" mentions units'),
+        ("# heights in [in]\n", ("mm", "um"), ReadError, "mentions units in words"),
     ],
 )
 def test_headings_that_are_not_read_are_refused(tmp_path, head, flags, fault, match):

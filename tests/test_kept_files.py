@@ -97,7 +97,7 @@ def test_foreign_netcdf_files_are_read_by_a_process_of_their_own(tmp_path, monke
     found = netcdf.read(path)
     np.testing.assert_array_equal(found.variables["heights"].values, tree().variables["heights"].values)
     path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500))
-    with pytest.raises(faying.ReadError, match="no NetCDF-4 file, or is damaged"):
+    with pytest.raises(faying.ReadError, match="not a NetCDF-4 file, or is damaged"):
         netcdf.read(path)
     monkeypatch.setattr(netcdf, "seconds_for", lambda size: 0.05)
     with pytest.raises(faying.ReadError, match="HDF5 does not come to an end with it"):

@@ -61,7 +61,7 @@ DECIMAL = re.compile(r"(?<![\w.)\]/*:}\\])(?<!:[-+<>^ ,])\.(?=\d)(?!\d+[fgdeE%](
 
 
 def prose(page: str) -> str:
-    """A page with all that is no prose blanked, line by line, so that numbers of lines stay."""
+    """A page with all that is not prose blanked, line by line, so that numbers of lines stay."""
     out, fence = [], ""
     for line in page.splitlines():
         mark = re.match(r"\s*(`{3,}|:{3,})", line)
@@ -97,7 +97,7 @@ def long_sentences(page: str) -> Iterator[tuple[int, int, str]]:
     """Line of the paragraph, number of words and text of each sentence that is too long.
 
     A colon or semicolon before a capital letter ends one, too. Links and sources in brackets, inline equations and
-    numbers are no words.
+    numbers are not words.
     """
     for line, text in paragraphs(page):
         plain = re.sub(r"\$[^$]*\$", "$", text)

@@ -230,7 +230,7 @@ def _in_one_go(path: Path, columns: int) -> Any:
 
 
 def _numbers(text: str) -> list[float]:
-    """The numbers of a line, with commas, semicolons or blanks between; none where a word is no number."""
+    """The numbers of a line, with commas, semicolons or blanks between; none where a word is not a number."""
     try:
         return [float(word) for word in text.replace(",", " ").replace(";", " ").split()]
     except ValueError:
@@ -288,14 +288,14 @@ def read_list(path: Path, wanted: Sequence[Wanted], form: str) -> Any:
         Array (rows, len(wanted)) in SI units, in the wanted order.
 
     Raises:
-        ReadError: for a heading with other columns, words about units that are not read, or rows that are no numbers.
+        ReadError: for a heading with other columns, words about units that are not read, or rows that are not numbers.
         InputError: where a unit is stated by nobody, or differently by the heading and by the caller.
     """
     heading, where = _heading(path, wanted, form)
     table = read_numbers(path, len(wanted), form)
     endless = np.flatnonzero(np.isinf(table).any(axis=1))
     if endless.size:
-        raise ReadError(f"{path.name}: row {endless[0] + 1} of the numbers holds an infinite one; {form}")
+        raise ReadError(f"{path.name}: row {endless[0] + 1} of the numbers has an infinite one; {form}")
     columns = []
     for k, column in enumerate(wanted):
         place = k if heading is None else next(i for i, one in enumerate(heading) if one.name in column.names)
@@ -341,7 +341,7 @@ def _heading(path: Path, wanted: Sequence[Wanted], form: str) -> tuple[tuple[Cel
     for number, line in above:
         if number not in taken and heading is None and states_unit(line, {unit for unit in units if unit}):
             raise ReadError(
-                f'{path.name}, line {number}: "{line.strip()[:80]}" speaks of units in words that Faying does not '
+                f'{path.name}, line {number}: "{line.strip()[:80]}" mentions units in words that Faying does not '
                 f"read; write one heading with names and units above the numbers, or take the line out; {form}"
             )
     return heading, where if heading is not None else path.name
@@ -395,5 +395,5 @@ def read_numbers(path: Path, columns: int, form: str) -> Any:
         elif rows:
             raise ReadError(f"{path.name}, line {number}: {line.strip()[:60]!r} is not {columns} numbers; {form}")
     if not rows:
-        raise ReadError(f"{path.name} holds no line of {columns} numbers; {form}")
+        raise ReadError(f"{path.name} has no line of {columns} numbers; {form}")
     return np.array(rows)

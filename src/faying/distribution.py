@@ -343,7 +343,7 @@ def _of_text(value: object, unit: str, name: str) -> dict[str, Any]:
             plain = str(fault).partition("; write")[0].removeprefix(f"{name} = ").removeprefix(f"{name}: ")
             raise InputError(f'{name} = "{value}": {plain}; {_forms(unit)}') from None
     given = f'"{value}"' if isinstance(value, str) else shown(value)
-    raise InputError(f"{name} = {given} is no distribution; {_forms(unit)}, or a table with `distribution`")
+    raise InputError(f"{name} = {given} is not a distribution; {_forms(unit)}, or a table with `distribution`")
 
 
 def _sd(value: object, centre: float, unit: str, name: str) -> float:

@@ -123,7 +123,7 @@ def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Pa
     The hidden folder stands in `folder` where that exists, so that both are on one disk, else beside it. Made before
     the work, it shows in time where nothing can be written. Files of other names in `folder` stay as they are.
 
-    Two processes do not write to one folder at once: the second is refused before its work. What processes that are no
+    Two processes do not write to one folder at once: the second is refused before its work. What processes that are not
     more have left hidden is taken away.
 
     Args:

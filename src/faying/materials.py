@@ -134,7 +134,7 @@ class ContactPair:
         first, second: the materials, or their names: those of the catalogue, or "rigid"; not both rigid.
 
     Raises:
-        InputError: for two rigid bodies, names that the catalogue lacks, and what is no material.
+        InputError: for two rigid bodies, names that the catalogue lacks, and what is not a material.
     """
 
     first: Material

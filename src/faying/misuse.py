@@ -215,7 +215,7 @@ def numbers(value: Any, name: str, *shape: int | str) -> Array:
         shape: Length of each dimension, or its name where any will do.
 
     Raises:
-        InputError: It is no array of numbers, or has another shape.
+        InputError: It is not an array of numbers, or has another shape.
     """
     import numpy as np
 

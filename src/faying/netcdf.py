@@ -171,7 +171,7 @@ def read_here(path: Path) -> Group:
             with h5netcdf.File(path, "r") as file:
                 return _taken(file)
     except (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError, IndexError) as fault:
-        raise ReadError(f"{path} is no NetCDF-4 file, or is damaged ({type(fault).__name__}: {fault})") from None
+        raise ReadError(f"{path} is not a NetCDF-4 file, or is damaged ({type(fault).__name__}: {fault})") from None
 
 
 def _taken(source: Any) -> Group:

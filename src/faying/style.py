@@ -60,7 +60,7 @@ _STYLE: Any = {
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
 
-RESOLUTION = 200  # dots per inch of what is no line
+RESOLUTION = 200  # dots per inch of what is not a line
 SHADED = 130  # those of shaded areas within drawings of lines
 
 

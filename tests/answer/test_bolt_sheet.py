@@ -245,8 +245,8 @@ def test_a_bolt_has_its_own_table(made):
 @pytest.mark.parametrize(
     ("table", "text"),
     [
-        ({"bolt": "left"}, '"left" is no bolt; there are "bolt"'),
-        ({"tightening": "by hand"}, "is no way of tightening"),
+        ({"bolt": "left"}, '"left" is not a bolt; there are "bolt"'),
+        ({"tightening": "by hand"}, "is not a way of tightening"),
         ({"tightening": "feel", "tightening_factor": 2.0}, "both tightening and tightening_factor"),
         ({"tightening_factor": 0.5}, "should be a number from 1 to 10"),
         ({"axial": ["2 kN", "1 kN"]}, "the second load must be the greater"),
@@ -369,7 +369,7 @@ def test_another_case_never_takes_stress_from_a_bolt(made):
 @pytest.mark.parametrize(
     ("table", "text"),
     [
-        ({"load": "lift"}, r'bolt_sheet\[1\].load = "lift" is no \[\[load\]\]; there are "pull"'),
+        ({"load": "lift"}, r'bolt_sheet\[1\].load = "lift" is not a \[\[load\]\]; there are "pull"'),
         ({"load": "pull", "axial": "1 kN"}, "has both load and axial, which the load gives"),
         ({"load": 3}, "should be the name of a load, or of several"),
     ],

@@ -137,7 +137,7 @@ def test_names_that_do_not_fit_the_geometry_are_reported_together(study):
     assert "bolt 'bolt' names the face 'lower.nut', which does not exist; the faces are" in text
     assert "joint 'joint' names the face 'floor'" in text
     assert "part 'base' is not in two-blocks.step" in text
-    assert "[part] says nothing of 'lower'" in text
+    assert "[part] has no entry for 'lower'" in text
 
 
 def test_a_preload_that_the_law_covers_has_one_answer(result):

@@ -105,7 +105,7 @@ def test_what_is_offered_to_scatter_can(tmp_path):
     for name in scatter:
         with pytest.raises(StudyFaults) as faults:
             Study.from_dict(tomllib.loads(changed(STUDY, ("uncertain", name), "x")), folder=tmp_path)
-        assert "nothing that can scatter" not in str(faults.value), name
+        assert "cannot scatter" not in str(faults.value), name
 
 
 def test_names_are_those_of_the_messages(tmp_path):
@@ -130,12 +130,12 @@ def test_tables_are_added_and_removed():
 @pytest.mark.parametrize(
     ("work", "said"),
     [
-        (lambda: changed(STUDY, ("modes", "cuont"), "3"), "modes.cuont is no key"),
-        (lambda: changed(STUDY, ("bolt",), "3"), "bolt is no key"),
+        (lambda: changed(STUDY, ("modes", "cuont"), "3"), "modes.cuont is not a key"),
+        (lambda: changed(STUDY, ("bolt",), "3"), "bolt is not a key"),
         (lambda: added(STUDY, ("modes",)), "is there already"),
-        (lambda: added(STUDY, ("nothing",)), "nothing is no table"),
+        (lambda: added(STUDY, ("nothing",)), "nothing is not a table"),
         (lambda: added(STUDY, ("bolt", 5)), r"bolt\[6\] has no place"),
-        (lambda: changed(STUDY, ("joint", 0, "faces"), "[a"), "no list or table as TOML"),
+        (lambda: changed(STUDY, ("joint", 0, "faces"), "[a"), "not a list or table as TOML"),
         (lambda: form_of("a = ", {}), "not TOML"),
     ],
 )

@@ -81,7 +81,7 @@ def test_uploads_cannot_leave_the_folder(server, tmp_path, name):
     before = sorted(tmp_path.parent.rglob("*"))
     answer, text = ask(server, f"api/file?name={quote(name)}", "POST", b"data")
     assert answer.status == 200
-    assert "no file name that is taken here" in json.loads(text)["fault"]
+    assert "not a file name that Faying accepts" in json.loads(text)["fault"]
     assert sorted(tmp_path.parent.rglob("*")) == before
 
 
@@ -133,7 +133,7 @@ def test_a_length_of_5_000_digits_is_refused(server):
 
 def test_json_nested_without_end_is_refused(server):
     body = "[" * 50_000 + "]" * 50_000
-    assert "is no JSON" in json.loads(ask(server, "api/study", "PUT", body)[1])["fault"]
+    assert "is not JSON" in json.loads(ask(server, "api/study", "PUT", body)[1])["fault"]
 
 
 def test_a_fault_of_ours_is_an_answer(server, monkeypatch):
@@ -201,7 +201,7 @@ def test_the_study_is_saved_as_it_was_typed(server, tmp_path):
     assert ask(server, "api/study", "PUT", json.dumps({"text": "x" * (1 << 20) + "y", "before": text}))[1].startswith(
         '{"fault"'
     )
-    assert "no table of JSON" in ask(server, "api/study", "PUT", "[1]")[1]
+    assert "not a table of JSON" in ask(server, "api/study", "PUT", "[1]")[1]
     assert (tmp_path / "study.toml").read_text(encoding="utf-8") == text
 
 

@@ -218,7 +218,7 @@ def _without_shear(monkeypatch):
 def test_faults_are_named(study, monkeypatch):
     with pytest.raises(InputError, match="joint 'joint' has no friction.*give friction = 0.2"):
         faying.backbone(study)
-    with pytest.raises(InputError, match="friction = 0 is no coefficient"):
+    with pytest.raises(InputError, match="friction = 0 is not a coefficient"):
         faying.backbone(study, friction=0.0)
     with pytest.raises(InputError, match="give the least acceleration"):
         faying.backbone(study, friction=0.2, amplitude=(5.0, 1.0))
@@ -276,7 +276,7 @@ def test_a_run_without_friction_says_so_before_the_work(tmp_path):
     text = (EXAMPLE / "study.toml").read_text().replace("model.inp", str(EXAMPLE / "model.inp"))
     (tmp_path / "study.toml").write_text(text + "[backbone]\nmode = 2\n")
     said = []
-    with pytest.raises(InputError, match="has no friction, without which nothing slips"):
+    with pytest.raises(InputError, match="has no friction, and without it nothing slips"):
         faying.run(tmp_path / "study.toml", report=lambda stage, *_: said.append(stage))
     assert said == []
 

@@ -68,5 +68,5 @@ def test_what_the_scan_does_not_resolve_is_said_beside_the_numbers(scan_file):
 def test_a_contact_map_without_a_numerical_contact_is_refused(scan_file):
     with pytest.raises(InputError, match="put halfspace among --models"):
         run(*scan_file, *STEEL, "--models", "jk,gw", "--contact-map", "x.png")
-    with pytest.raises(InputError, match="goes with --scan"):
+    with pytest.raises(InputError, match="needs --scan"):
         run(*scan_file, *STEEL, "--model", "jk", "--contact-map", "x.png")

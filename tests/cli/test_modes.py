@@ -77,7 +77,7 @@ def test_matrix_market_with_units(exported, capsys, tmp_path):
 def test_faults(exported, capsys, tmp_path):
     out, study = exported / "out", str(exported / "study.toml")
     assert "give either a study or --stiffness" in fault(capsys, ["modes"])
-    assert "--mass goes with --stiffness" in fault(capsys, ["modes", study, "--mass", str(out / "mass.npz")])
+    assert "--mass is for --stiffness" in fault(capsys, ["modes", study, "--mass", str(out / "mass.npz")])
     assert "name the mass too" in fault(capsys, ["modes", "--stiffness", str(out / "stiffness.npz")])
     (tmp_path / "bad.npz").write_bytes(b"no zip")
     both = ["modes", "--stiffness", str(tmp_path / "bad.npz"), "--mass", str(out / "mass.npz")]
@@ -118,4 +118,4 @@ def test_faults_of_points(exported, capsys, tmp_path):
     file.write_text("1 2 3\n")
     assert "has 1 rows of 3" in fault(capsys, argv)
     study = str(exported / "study.toml")
-    assert "--points goes with --stiffness" in fault(capsys, ["modes", study, "--points", str(file)])
+    assert "--points is for --stiffness" in fault(capsys, ["modes", study, "--points", str(file)])

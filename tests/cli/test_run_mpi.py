@@ -63,4 +63,4 @@ def test_a_backbone_is_refused_before_the_work(tmp_path, capsys):
     with pytest.raises(SystemExit) as end:
         main(["run", str(path), "--mpi", "2", "--no-files"])
     assert end.value.code == 1
-    assert "[backbone] asks for a factorisation" in capsys.readouterr().err
+    assert "[backbone] needs a factorisation" in capsys.readouterr().err

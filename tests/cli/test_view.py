@@ -68,8 +68,8 @@ def test_the_page_is_opened_unless_that_is_refused(tmp_path, monkeypatch):
 def test_what_cannot_be_looked_at_is_said(tmp_path):
     with pytest.raises(ReadError, match="no file"):
         view(tmp_path / "none.step")
-    with pytest.raises(InputError, match="does not say its unit"):
+    with pytest.raises(InputError, match="does not state its unit"):
         view(EXAMPLES / "two-blocks" / "model.inp", "--no-open")
     two_boxes().save(tmp_path / "result.nc")
-    with pytest.raises(InputError, match="has its units inside"):
+    with pytest.raises(InputError, match="states its units"):
         view(tmp_path / "result.nc", "--unit", "mm")

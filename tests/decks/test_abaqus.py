@@ -91,20 +91,20 @@ def fault(tmp_path, text, match, kind=faying.ReadError):
         ("*NCOPY, CHANGE NUMBER=100, OLD SET=NALL, SHIFT\n1., 0., 0.\n", r"\*NCOPY makes nodes or elements"),
         ("*ELGEN\n1, 3\n", r"\*ELGEN makes nodes or elements"),
         ("*SYSTEM\n1., 2.\n", r"\*SYSTEM has 2 numbers"),
-        ("*SYSTEM\n0, 0, 0, 1, 0, 0\n2, 0, 0\n", r"coincide or lie on one line"),
+        ("*SYSTEM\n0, 0, 0, 1, 0, 0\n2, 0, 0\n", r"coincide or are on one line"),
         ("*NODE\n100, 9., 9., 9.\n", "node 100 is given twice, at different places"),
         ("*NODE\n9000, 1,5, 2,5, 3,5\n", "node 9000 has more than three coordinates; a number has a decimal point"),
         ("*NODE\n9000, 1,5, 2,5, 3,5, 1\n", "node 9000 has 7 finite numbers"),
         ("*NODE\n9000, nan, 0, 0\n", "node 9000 has 3 finite numbers"),
         ("*NODE\n9000, 1e400, 0, 0\n", "node 9000 has 3 finite numbers"),
-        ("*NODE\n-3, 1., 0, 0\n", "node -3: numbers of nodes lie between 1 and"),
+        ("*NODE\n-3, 1., 0, 0\n", "node -3: numbers of nodes are between 1 and"),
         ("*NODE\n1" + 30 * "0" + ", 1., 0, 0\n", "is none of a node or an element"),
-        ("*ELEMENT, TYPE=C3D4\n-5, 100, 103, 106, 109\n", "element -5: numbers of elements lie between 1"),
+        ("*ELEMENT, TYPE=C3D4\n-5, 100, 103, 106, 109\n", "element -5: numbers of elements are between 1"),
         ("*NSET, NSET=x, GENERATE\n1, 1000000000000\n", "a range from 1 to 1000000000000 by 1"),
         ("*NSET, NSET=x, GENERATE\n1, 1e12\n", "something that is not a number"),
         ("*NSET, NSET=x, GENERATE\n9, 1\n", "a range from 9 to 1"),
         ("*NSET, NSET=x, GENERATE\n1, 9, 0\n", "a range from 1 to 9 by 0"),
-        ("*NSET, NSET=x\nx\n", "names the set 'x', which the file does not hold or is part of it"),
+        ("*NSET, NSET=x\nx\n", "names the set 'x', which is not in the file or is part of it"),
         ("*ELEMENT, TYPE=C3D8I\n", "0 numbers do not make elements of 8 nodes; is the file complete"),
         ("*ELEMENT, TYPE=C3D4,", "the file ends in a keyword that goes on; is it complete?"),
         ("*SURFACE, TYPE=CUTTING SURFACE, NAME=x\n1, S1\n", r"\*SURFACE of this type is not known"),
@@ -155,7 +155,7 @@ def test_includes_without_end(tmp_path, blocks):
     written(tmp_path, "", "part20.inp")
     fault(tmp_path, "*INCLUDE, INPUT=part0.inp\n", "more than 500 files are included")
     os.mkfifo(tmp_path / "pipe")
-    fault(tmp_path, "*INCLUDE, INPUT=pipe\n", "it is no regular file")
+    fault(tmp_path, "*INCLUDE, INPUT=pipe\n", "it is not a regular file")
 
 
 def test_sets_of_instances_that_are_generated_or_named(tmp_path, blocks):

@@ -1,4 +1,4 @@
-"""Decks of bolted joints as other programs write them: what is no geometry is noted, not refused and not lost."""
+"""Decks of bolted joints as other programs write them: what is not geometry is noted, not refused and not lost."""
 
 import re
 
@@ -59,10 +59,10 @@ def area(mesh, face):
         ("*SURFACE, NAME=a\n1, S2\n*SURFACE, NAME=b\n2, S1\n*TIE, NAME=t\nb, a\n", ["*TIE (1): contact and ties"]),
         ("*CONTACT PAIR, INTERACTION=i\nx, y\n*CLEARANCE, MASTER=x, SLAVE=y, VALUE=0\n", ["*CONTACT PAIR (1), *CLEAR"]),
         ("*BOLT TENSIONER, SPEED=3\n1, 2\n", ["*BOLT TENSIONER: not known, and passed over"]),
-        ("*NSET, NSET=far, GENERATE\n5, 900, 1\n", ["'far' is generated up to 900", "it holds the 12 that there are"]),
+        ("*NSET, NSET=far, GENERATE\n5, 900, 1\n", ["'far' is generated up to 900", "those in the file, 12"]),
         ("*NODE\n401,0,0,-5\n402,20,0,-5\n403,20,20,-5\n404,0,20,-5\n*ELEMENT, TYPE=S4, ELSET=floor\n"
          "77,401,402,403,404\n*SURFACE, NAME=fl\nfloor, SPOS\n*SURFACE, NAME=one\n77, SNEG\n",
-         ["the surface 'fl' lies on elements that are no solids", "surface 'one'", "1 shells 'floor' lie on no solid"]),
+         ["the surface 'fl' lies on elements that are not solids", "surface 'one'", "shells 'floor' are not on"]),
         ("*NODE\n501,5,5,0\n502,5,5,20\n*ELEMENT, TYPE=B31, ELSET=bolt\n11,501,502\n*ELSET, ELSET=all\nlow,up,bolt\n",
          ["1 elements B31 are left out"]),
     ],
@@ -291,7 +291,7 @@ def bdf(case="", more=""):
         ("SET 7 = 5 THRU 8\nELFORCE(SORT1,REAL) = 7 $ bolts\n", set(), "as ELFORCE = 7 says"),
         ("SET 80 = 1,2,3,4\nDISP(PLOT) = 80\n", {"SET80"}, ""),
         ("SET 80 = 1,2,3,4\n", {"SET80"}, ""),
-        ("SET 80 = 1,2,101\n", set(), "SET80 of the case control names what is no grid"),
+        ("SET 80 = 1,2,101\n", set(), "SET80 of the case control has something that is not a grid"),
     ],
 )
 def test_sets_of_the_case_control(tmp_path, case, faces, words):
@@ -357,7 +357,7 @@ def test_types_in_blocks(tmp_path, key):
     mesh = read(tmp_path, cdb(f"ETBLOCK,{len(numbers):9d},{3:9d}\n(2i9,19a9)\n{rows}{-1:9d}\n"), "m.cdb")
     assert len(mesh.parts) == 2
     assert area(mesh, "TOP") == pytest.approx(4e-4)
-    with pytest.raises(faying.ReadError, match="ETBLOCK says 7 types and holds"):
+    with pytest.raises(faying.ReadError, match="ETBLOCK says 7 types and has"):
         read(tmp_path, cdb(f"ETBLOCK,{7:9d},{3:9d}\n(2i9,19a9)\n{rows}{-1:9d}\n"), "m.cdb")
 
 
@@ -409,7 +409,7 @@ def test_an_element_in_two_groups_is_one(tmp_path):
     text += "\n".join(f"{k} {line}" for k, line in enumerate(cells, 1)) + "\n$EndElements\n"
     mesh = read(tmp_path, text, "m.msh")
     assert set(mesh.parts) == {"body", "lid"}
-    assert "'steel' and 'body' hold the same elements" in said(mesh)
+    assert "'steel' and 'body' have the same elements" in said(mesh)
     for face in ("body.top", "body.loaded"):
         name = face if face in mesh.faces else face.removeprefix("body.")
         assert area(mesh, name) == pytest.approx(4e-4)

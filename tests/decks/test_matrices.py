@@ -84,7 +84,9 @@ def test_nastran_dmig(model, tmp_path, form, wide):
 
 def test_units_must_be_said(model, tmp_path):
     path = calculix(tmp_path, *model[2])
-    with pytest.raises(faying.InputError, match='does not say its units; .* stiffness_unit = "N/mm", mass_unit = "t"'):
+    with pytest.raises(
+        faying.InputError, match='does not state its units; .* stiffness_unit = "N/mm", mass_unit = "t"'
+    ):
         read_matrices(path)
     K, _, _ = read_matrices(path, stiffness_unit="N/m", mass_unit="kg")
     assert np.abs(K - model[2][0]).max() < 1e-9 * np.abs(K).max()
@@ -127,7 +129,7 @@ def test_faults(model, tmp_path):
     path.write_text(path.read_text().rsplit(maxsplit=1)[0])
     refused("it is cut short", path)
     path = dmig(tmp_path, K, M, dofs)
-    refused("holds no DMIG K2GG; it holds KAAX, MAAX", path, names=("K2GG", "MAAX"))
+    refused("has no DMIG K2GG; it has KAAX, MAAX", path, names=("K2GG", "MAAX"))
     path.write_text(path.read_text().replace(f"{6:8d}{2:8d}", f"{6:8d}{4:8d}"))
     refused("DMIG KAAX is complex", path)
     path.write_text("DMIG    KAAX           1       x\n")
@@ -235,8 +237,8 @@ def test_a_file_cut_short_is_refused_or_whole(model, tmp_path, kind):
         ("3 3 2\n1 1 1.0\n1 1 1.0\n", "row 1, column 1 is given twice"),
         ("3 3 1\n1 2 1.0\n", "is symmetric, so that it should have the lower triangle alone"),
         ("3 3 1\n1 1 1.0", "ends in the middle of a line"),
-        ("3 3 1\n1 1 1.0E\n", "holds words that are not numbers"),
-        ("3 3\n", "is no size of a matrix"),
+        ("3 3 1\n1 1 1.0E\n", "has words that are not numbers"),
+        ("3 3\n", "is not the size of a matrix"),
         ("3 3 1000000000\n1 1 1.0\n", "has 3 numbers where its head says 3,000,000,000"),
     ],
 )

@@ -279,7 +279,7 @@ def test_parts_that_share_nodes_are_split_at_a_named_face(tmp_path, kind):
     skin = next(f"{number}, S{side + 1}" for number, side, *_ in meshfiles.sides(apart, "p0.left"))
     partly = faying.read_mesh(written(tmp_path, f"{alone}{skin}\n", "m.inp"), unit="mm")
     assert "mid" not in partly.faces
-    assert re.search("'mid' are no outer side .* on each side into an element set", partly.notes[0].text)
+    assert re.search("'mid' are not on the outside .* on each side into an element set", partly.notes[0].text)
     unnamed = merged[: merged.index("*NSET")]
     assert "*NSET" not in unnamed
     whole = faying.read_mesh(written(tmp_path, unnamed, "m.inp"), unit="mm")
@@ -310,7 +310,7 @@ def test_parts_by_choice_by_set_and_by_connection(tmp_path):
 
 def test_units(tmp_path):
     path = written(tmp_path, meshfiles.abaqus(two(gap=1e-4)), "m.inp")
-    with pytest.raises(faying.InputError, match='does not say in which unit .* unit = "mm"'):
+    with pytest.raises(faying.InputError, match='does not state the unit of its coordinates.* unit = "mm"'):
         faying.read_mesh(path)
     with pytest.raises(faying.InputError, match="unit of the mesh"):
         faying.read_mesh(path, unit="kN")
@@ -359,16 +359,16 @@ def test_faults_of_a_mesh_file(tmp_path):
     fault(
         tmp_path,
         good.replace("_p0.left_S6, S6", "_p0.front_S6, S6"),
-        "element set '_p0.front_S6', which m.inp does not hold",
+        "element set '_p0.front_S6', which is not in m.inp",
     )
     fault(tmp_path, good.replace("_p0.left_S6, S6", "_p0.left_S6, S9"), "side 'S9'; the sides of solids are S1 to S6")
-    fault(tmp_path, good + "*NSET, NSET=x\ny\n", r"set 'x' names the set 'y', which the file does not hold")
-    fault(tmp_path, good + "*NSET, NSET=x\n5\n", "the set 'x' names node 5, which the file does not hold")
+    fault(tmp_path, good + "*NSET, NSET=x\ny\n", r"set 'x' names the set 'y', which is not in the file")
+    fault(tmp_path, good + "*NSET, NSET=x\n5\n", "the set 'x' names node 5, which is not in the file")
     fault(tmp_path, good + "*NSET\n5\n", r"\*NSET without a name")
     fault(tmp_path, good + "*INCLUDE, INPUT=none.inp\n", "cannot read .*none.inp")
     fault(tmp_path, good + "*INCLUDE, INPUT=m.inp\n", "includes itself")
     fault(tmp_path, "1, 2, 3\n", "data before the first keyword")
-    fault(tmp_path, good.replace("100, 0,", "100, zero,"), r"\*NODE holds something that is not a number")
+    fault(tmp_path, good.replace("100, 0,", "100, zero,"), r"\*NODE has something that is not a number")
     fault(tmp_path, "", "is not a Gmsh mesh file", name="m.msh")
     with pytest.raises(faying.ReadError, match="no file"):
         faying.read_mesh(tmp_path / "none.inp", unit="mm")
@@ -394,7 +394,7 @@ def test_faults_of_other_formats(tmp_path):
     fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,,x"), "GRID 100 cannot be read", "m.bdf")
     fault(tmp_path, "BEGIN BULK\nENDDATA\n", "holds 0 GRID cards", "m.bdf")
     text = meshfiles.gmsh(mesh)
-    fault(tmp_path, text.replace("2.2 0 8", "2.2 1 8"), "is a binary file whose order of bytes is not known", "m.msh")
+    fault(tmp_path, text.replace("2.2 0 8", "2.2 1 8"), "is a binary file of unknown byte order", "m.msh")
     fault(tmp_path, text.replace("2.2 0 8", "3 0 8"), "has format '3 0 8'; save it in 4.1 or 2.2", "m.msh")
     fault(tmp_path, text[:-100], "has no .EndElements; the file is cut short", "m.msh")
     fault(tmp_path, re.sub(r"^(\d+) 17 2", r"\1 12 2", text, flags=re.M), "bricks of 27 nodes are not known", "m.msh")
@@ -457,7 +457,7 @@ def test_an_archive_with_other_elements_and_turned_nodes(tmp_path):
     spider = "".join(f"{w:9d}" for w in (1, 9, 1, 1, 0, 0, 0, 0, 2, 0, 9999, 100, 103))
     more = archive.replace("/PREP7\n", "/PREP7\nET,9,MPC184\n").replace(f"{-1:9d}\n", f"{spider}\n{-1:9d}\n", 1)
     with pytest.raises(
-        faying.ReadError, match=f"EBLOCK says {count} elements and holds {count + 1}; is the archive complete"
+        faying.ReadError, match=f"EBLOCK says {count} elements and has {count + 1}; is the archive complete"
     ):
         faying.read_mesh(written(tmp_path, more, "m.cdb"), unit="mm")
     head = next(line for line in more.splitlines() if line.startswith("EBLOCK"))
@@ -467,7 +467,7 @@ def test_an_archive_with_other_elements_and_turned_nodes(tmp_path):
         "1 elements of type 184 (rigid or multipoint elements) are left out, with their stiffness and mass"
     ]
     gone = "\n".join(one for one in archive.splitlines() if one != turned) + "\n"
-    with pytest.raises(faying.ReadError, match="NBLOCK says .* nodes and holds .*; is the archive complete"):
+    with pytest.raises(faying.ReadError, match="NBLOCK says .* nodes and has .*; is the archive complete"):
         faying.read_mesh(written(tmp_path, gone, "m.cdb"), unit="mm")
 
 

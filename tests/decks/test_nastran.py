@@ -124,13 +124,13 @@ def plain(numbers, places):
         ),
         (
             ["GRDSET,,5", "CORD2R,5,,0.,0.,0.,0.,0.,1.", "+,0.,0.,2."],
-            "coordinate system 5: its three points coincide or lie on one line",
+            "coordinate system 5: its three points coincide or are on one line",
         ),
         (["CORD3G,5,E123,1,1,1"], "CORD3G is not known"),
         (["GRID,100,,9.,9.,9."], "GRID 100 is given twice, at different places"),
         (["GRID,90001,,1,0,2,0,3,0"], "GRID 90001 has more than three coordinates; a number has a decimal point"),
         (["GRID,90001,,1,5,2,5,3,5,6,7"], "10 fields, 8 fit; a number has a decimal point, not a comma"),
-        (["GRID,-4,,1.,2.,3."], "node -4: numbers of nodes lie between 1 and"),
+        (["GRID,-4,,1.,2.,3."], "node -4: numbers of nodes are between 1 and"),
         (["GRID,90001,,1.E+999,2.,3."], "node 90001 has no three finite coordinates"),
         (["GRID,1" + 25 * "0" + ",,1.,2.,3."], "is none of a node or an element"),
         (["INCLUDE 'm.bdf'"], "includes itself"),
@@ -186,7 +186,7 @@ def test_skins_are_faces(tmp_path, kinds):
         assert found.face_part[f"face{pid}"] == f"part{pid - 30}"
         assert sum(map(len, found.face(f"face{pid}"))) == sum(map(len, mesh.face(face)))
     assert [note.text for note in found.notes] == [
-        "1 shells 'face33' lie on no solid and are left out, with their stiffness and mass"
+        "1 shells 'face33' are not on a solid and are left out, with their stiffness and mass"
     ]
 
 
@@ -210,7 +210,7 @@ def test_ranges_far_beyond_the_nodes_cost_nothing(tmp_path, blocks):
     assert len(fill)  # the range names numbers that no node has
     text = deck(blocks, plain, [f"SET1,41,1,THRU,{10**12}"])
     mesh = read(tmp_path, text)
-    assert "SET41" not in mesh.faces  # all nodes are no face
+    assert "SET41" not in mesh.faces  # all nodes are not a face
     alike(mesh, blocks)
 
 

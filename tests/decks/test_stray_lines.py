@@ -81,10 +81,10 @@ def spoilt(path, begins, change, after=0):
         ("four.msh", "$PhysicalNames", "is in no section"),
         ("four.msh", "$EndMeshFormat", "is in no section"),
         ("two.msh", "$EndPhysicalNames", "is in no section"),
-        ("two.msh", "6", "announces .* names and holds"),
-        ("assembly.inp", "*End Instance", "stands before the .END INSTANCE of what began before it"),
-        ("assembly.inp", "*End Part", "stands before the .END PART of what began before it"),
-        ("a.cdb", "CMBLOCK,P0_LEFT", "tells the form of a block, and the line before is no command of one"),
+        ("two.msh", "6", "announces .* names and has"),
+        ("assembly.inp", "*End Instance", "comes before the .END INSTANCE of what began before it"),
+        ("assembly.inp", "*End Part", "comes before the .END PART of what began before it"),
+        ("a.cdb", "CMBLOCK,P0_LEFT", "gives the form of a block, but the line before is not a command of one"),
     ],
 )
 def test_a_file_without_one_of_its_lines_is_refused(seeds, name, line, says):
@@ -99,9 +99,9 @@ def test_a_file_without_one_of_its_lines_is_refused(seeds, name, line, says):
 @pytest.mark.parametrize(
     ("name", "section", "says"),
     [
-        ("two.msh", "$Elements", "says 28 records and holds 29 lines"),
-        ("two.msh", "$Nodes", "says 63 records and holds 64 lines"),
-        ("four.msh", "$Entities", "goes on after its last record|middle of a record"),
+        ("two.msh", "$Elements", "says 28 records and has 29 lines"),
+        ("two.msh", "$Nodes", "says 63 records and has 64 lines"),
+        ("four.msh", "$Entities", "continues after its last record|middle of a record"),
     ],
 )
 def test_a_count_that_stands_twice_is_refused(seeds, name, section, says):
@@ -116,12 +116,12 @@ def test_a_physical_volume_without_elements_is_said(seeds):
     renamed.write_text(re.sub(r'(?m)^3 50 "', '3 77 "', path.read_text(), count=1))
     assert renamed.read_text() != path.read_text()
     notes = [note.text for note in faying.read_mesh(renamed, unit="mm").notes]
-    assert [text for text in notes if "the physical volume 'p0' holds no elements" in text], notes
+    assert [text for text in notes if "the physical volume 'p0' has no elements" in text], notes
 
 
 def test_a_line_too_many_in_a_component_is_refused(seeds):
     twice = spoilt(seeds["a.cdb"], "CMBLOCK", lambda numbers: [numbers, numbers], after=2)
-    with pytest.raises(faying.ReadError, match="stands in no block"):
+    with pytest.raises(faying.ReadError, match="is not in a block"):
         faying.read_mesh(twice, unit="mm")
 
 
@@ -149,7 +149,7 @@ def test_a_property_of_nastran_is_a_whole_number(seeds):
     assert "2.5" in text
     other = path.with_name("half.bdf")
     other.write_text(text)
-    with pytest.raises(faying.ReadError, match="is no whole number"):
+    with pytest.raises(faying.ReadError, match="is not a whole number"):
         faying.read_mesh(other, unit="mm")
 
 
@@ -166,7 +166,7 @@ def test_a_list_holds_no_infinite_number(tmp_path):
 
     file = tmp_path / "form.csv"
     file.write_text("x [mm],y [mm],z [um]\n0,0,1\n1,0,2\n0,1,-inf\n1,1,nan\n")
-    with pytest.raises(faying.ReadError, match="row 3 of the numbers holds an infinite one"):
+    with pytest.raises(faying.ReadError, match="row 3 of the numbers has an infinite one"):
         read_heights(file)
 
 
@@ -227,17 +227,17 @@ def test_a_response_over_time_has_no_frequencies(seeds):
 def test_a_group_of_elements_that_are_not_there_is_said(seeds):
     path: Path = seeds["u.unv"]
     lines = path.read_text().splitlines()
-    assert not [note for note in faying.read_mesh(path, unit="mm").notes if "does not hold" in note.text]
+    assert not [note for note in faying.read_mesh(path, unit="mm").notes if "not in the file" in note.text]
     at = next(k for k, line in enumerate(lines) if line.startswith("         9       115"))
     other = path.with_name("lost.unv")
     other.write_text("\n".join(lines[:at] + lines[at + 2 :]) + "\n")
     notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
-    assert "the group 'p0' names elements that the file does not hold: 9" in notes
+    assert "the group 'p0' names elements that are not in the file: 9" in notes
 
 
 def test_a_group_with_a_wrong_count_is_refused(seeds):
     other = spoilt(seeds["u.unv"], "p1.right", lambda head: [head[:-1] + "0"], after=-1)
-    with pytest.raises(faying.ReadError, match="stands where a group has its name|names .* things and holds"):
+    with pytest.raises(faying.ReadError, match="is where a group has its name|names .* things and has"):
         faying.read_mesh(other, unit="mm")
 
 
@@ -245,7 +245,7 @@ def test_a_set_of_numbers_that_are_not_there_is_said(seeds):
     other = seeds["flat.inp"].with_name("absent.inp")
     other.write_text(seeds["flat.inp"].read_text() + "*ELSET, ELSET=mine\n17, 1939\n")
     notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
-    assert "the set 'mine' names numbers that the file does not hold: 1939" in notes
+    assert "the set 'mine' names numbers that are not in the file: 1939" in notes
 
 
 @pytest.mark.parametrize(
@@ -255,7 +255,7 @@ def test_a_set_of_numbers_that_are_not_there_is_said(seeds):
         ("u.unv", "       103", lambda line: [f"{line}        77"], "should be 4 whole numbers"),
         ("a.cdb", "      103", lambda line: [line.replace("0        0", "0        x", 1)], "should be 3 whole numbers"),
         ("a.cdb", "      103", lambda line: [line.ljust(27 + 6 * 21) + "7"], "should be 3 whole numbers and up to 6"),
-        ("two.msh", "2.2 0 8", lambda line: [line, "2.2 0 8"], "stands in .MeshFormat, which holds one line"),
+        ("two.msh", "2.2 0 8", lambda line: [line, "2.2 0 8"], "is in .MeshFormat, which has one line"),
     ],
 )
 def test_a_line_with_more_than_it_holds_is_refused(seeds, name, begins, change, match):
@@ -276,7 +276,7 @@ def test_nodes_in_columns_of_several_widths_are_read(seeds):
 def test_a_load_on_an_element_that_is_not_there_is_said(seeds):
     other = spoilt(seeds["small.bdf"], "PLOAD4  3       25 ", lambda card: [card.replace("25   ", "99925", 1)])
     notes = [note.text for note in faying.read_mesh(other, unit="mm").notes]
-    assert notes == ["PLOAD4 names elements that the file does not hold: 99925"]
+    assert notes == ["PLOAD4 names elements that are not in the file: 99925"]
 
 
 def test_a_phase_without_digits_is_refused(seeds):

@@ -238,7 +238,7 @@ def test_the_command_gives_modes(tmp_path, capsys):
     assert len([line for line in out.splitlines() if line.strip()[:1].isdigit()]) >= 4
     code, _, err = invoke(capsys, *words)
     assert code == 1
-    assert "does not say its units" in err
+    assert "does not state its units" in err
 
 
 def test_paper_dampers(tmp_path):
@@ -308,14 +308,16 @@ def test_faults_of_models(tmp_path):
 def test_faults_of_studies(tmp_path):
     other = TEXT.replace('faces = ["p0.right", "p1.left"]', 'faces = ["x", "y"]')
     two_joints = other + '[[joint]]\nname = "second"\nfaces = ["u", "v"]\n'
-    fault(tmp_path, "the study has the joints 'joint', 'second'; say whose law to take with --joint", text=two_joints)
+    fault(
+        tmp_path, "the study has the joints 'joint', 'second'; choose whose law to take with --joint", text=two_joints
+    )
     assert attached(tmp_path, text=two_joints, joint="second").pairs.lumped
     assert attached(tmp_path, text=other).pairs.lumped
     materials = TEXT.replace('[part.p1]\nmaterial = "45 steel"', '[part.roof]\nmaterial = "brass"')
     brass = (
         materials + '[material.brass]\nE = "100 GPa"\nnu = 0.33\ndensity = "8500 kg/m^3"\nyield_strength = "200 MPa"\n'
     )
-    fault(tmp_path, r"says nothing of 'p1', which the model holds, .* add \[part.p1\]", text=brass)
+    fault(tmp_path, r"has no entry for 'p1', which is in the model, .* add \[part.p1\]", text=brass)
 
 
 def test_faults_of_pressures(tmp_path):
@@ -343,7 +345,7 @@ def test_faults_of_pressures(tmp_path):
     path.write_text("\n".join([*lines, "five,6"]))
     fault(tmp_path, 'line 12: "five" in the column "node" is not a number', pressure=path)
     path.write_text("node,pressure [MPa]\n")
-    fault(tmp_path, "holds no pressures", pressure=path)
+    fault(tmp_path, "has no pressures", pressure=path)
 
 
 def test_nothing_is_written_after_a_fault(tmp_path, capsys):

@@ -56,7 +56,7 @@ def test_files(tmp_path):
     found = read_gap_map(file, **ARGUMENTS)
     assert found.at(np.array([[0.04, 0.02, 0.0]])) == pytest.approx([1.5e-6])
     file.write_text("only words\n")
-    with pytest.raises(faying.ReadError, match="holds no line of 3 numbers; a gap map has the columns x, y, gap"):
+    with pytest.raises(faying.ReadError, match="has no line of 3 numbers; a gap map has the columns x, y, gap"):
         read_gap_map(file, **ARGUMENTS)
     file.write_text("0 0 1\n80 0\n")
     with pytest.raises(faying.ReadError, match="line 2: '80 0' is not 3 numbers"):

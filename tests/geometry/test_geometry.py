@@ -124,7 +124,7 @@ def test_a_mesh_beyond_the_memory_is_refused_before_it_is_made(tmp_path, monkeyp
 
 
 def test_a_death_of_the_cad_kernel_is_an_error(tmp_path, monkeypatch):
-    """A segmentation fault in the child, as mutated files cause it, is no end of this process."""
+    """A segmentation fault in the child, as mutated files cause it, does not end this process."""
     import faying.geometry.cad_process as cad_process
 
     path = step(tmp_path, *plate_and_block())

@@ -134,7 +134,7 @@ def test_the_tangent_of_a_joint_against_differences():
 
 
 def test_a_friction_that_is_none():
-    with pytest.raises(faying.InputError, match="friction -0.1 is no coefficient of friction"):
+    with pytest.raises(faying.InputError, match="friction -0.1 is not a coefficient of friction"):
         plates(friction=-0.1)
 
 

@@ -98,7 +98,7 @@ def test_a_seat_is_measured_by_the_bearing_limit_of_its_part(made):
             {"thread": "M8x1", "diameter": "8 mm", "pitch": "1.25 mm", "material": "45 steel"},
             "and pitch = 1.25 mm differ",
         ),
-        ({"grade": "8.9", "thread": "M8"}, "no property class of ISO 898-1"),
+        ({"grade": "8.9", "thread": "M8"}, "not a property class of ISO 898-1"),
         ({"grade": "8.8", "thread": "8 mm"}, "should be a metric thread"),
         ({"grade": "8.8", "diameter": "8.5 mm", "material": "45 steel"}, "no coarse thread has a diameter of 8.5 mm"),
         ({"grade": 8.8, "thread": "M8"}, "grade = 8.8 should be"),

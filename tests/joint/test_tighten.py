@@ -47,7 +47,7 @@ def test_two_bolts_in_turn_against_springs_by_hand():
     assert found.bolt_forces[1] == pytest.approx(F2, rel=1e-9)
     assert found.bolt_forces[0] - F1 == pytest.approx(
         left - F1, rel=0.02
-    )  # the plates give a little, the bed is no law
+    )  # the plates give a little, the bed is not a law
     assert found.bolt_forces[0] < F1
     joint = made.joints[0].interface
     assert joint.weights @ found.pressures[0] == pytest.approx(sum(found.bolt_forces), rel=1e-6)

@@ -139,7 +139,7 @@ def test_what_does_nothing_changes_nothing(held):
 
 
 def test_a_load_across_that_changes_no_bolt_force_superposes(held):
-    """By symmetry the bolt keeps its force; what rounding makes of that is no departure."""
+    """By symmetry the bolt keeps its force; what rounding makes of that is not a departure."""
     across = faying.Load("across", forces=[faying.Force("p1.right", force=(0, 1.0, 0))])
     found = faying.load_cases(held[1], [across], modes=False)
     assert found.superposition[0] < 0.05
@@ -285,5 +285,5 @@ def test_a_load_that_nothing_holds_is_refused(free):
         faying.load_cases(state, [faying.Load("a", forces=[faying.Force("p1.right", force=(100, 0, 0))])])
     with pytest.raises(faying.InputError, match="no rigid support holds"):
         faying.load_cases(state, [faying.Load("m", displacements=[faying.Displacement("p1.right", (1e-6, 0, 0))])])
-    with pytest.raises(faying.InputError, match="no part and no bolt; there are 'p0', 'p1', 'b'"):
+    with pytest.raises(faying.InputError, match="neither a part nor a bolt; there are 'p0', 'p1', 'b'"):
         faying.load_cases(state, [faying.Load("m", temperature={"nut": 3.0})])

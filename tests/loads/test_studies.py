@@ -186,7 +186,7 @@ def test_names_that_the_geometry_lacks_are_named(study, tmp_path):
     with pytest.raises(faying.InputError) as fault:
         faying.load_cases(tmp_path / "study.toml")
     assert "load 'push' names the face 'upper.sea', which does not exist" in str(fault.value).replace('"', "'")
-    assert "temperature of 'nut', which is no part and no bolt" in str(fault.value)
+    assert "temperature of 'nut', which is neither a part nor a bolt" in str(fault.value)
 
 
 def test_intervals_follow_preload_and_friction(study, tmp_path):

@@ -236,7 +236,7 @@ def test_lines_that_the_estimator_cannot_take(synthetic):
     shifted = FRF(
         frequency=frf.frequency + 0.4, values=frf.values, outputs=frf.outputs, inputs=frf.inputs, quantity="mobility"
     )
-    with pytest.raises(InputError, match="no multiple of the spacing"):
+    with pytest.raises(InputError, match="not a multiple of the spacing"):
         identify_modes(shifted)
 
 

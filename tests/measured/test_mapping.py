@@ -52,7 +52,7 @@ def test_pairs_that_cannot_be_fitted(test, model, match):
 
 def test_a_transformation_neither_scales_nor_mirrors():
     for matrix in (2 * np.eye(3), np.diag([1, 1, -1.0])):
-        with pytest.raises(InputError, match="is no rotation"):
+        with pytest.raises(InputError, match="is not a rotation"):
             Transform(rotation=matrix)
 
 
@@ -98,7 +98,7 @@ def test_a_table_of_points(tmp_path):
         ("point,x [mm],y,z [mm]\n1,2,3,4\n", 'the column "y" lacks its unit'),
         ("point,x [mm],y [s],z [mm]\n1,2,3,4\n", '"s" of the column .* is not a unit like m'),
         ("point,x [mm],y [mm],height [mm]\n1,2,3,4\n", 'the column "height .mm." is unknown'),
-        ("point,x [mm],y [mm],z [mm]\n1.5,2,3,4\n", "line 2: 1.5 is no number of a point"),
+        ("point,x [mm],y [mm],z [mm]\n1.5,2,3,4\n", "line 2: 1.5 is not a point number"),
         ("point,x [mm],y [mm],z [mm]\n", "no points under its heading"),
         ("point,x [mm],y [mm],z [mm]\n1,2,3\n", 'line 2: no value in the column "z"'),
         ("point,x [mm],y [mm],z [mm]\n1,2,3,four\n", 'line 2: "four" in the column "z" is not a number'),

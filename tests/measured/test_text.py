@@ -33,7 +33,7 @@ def test_several_frfs_in_one_table(tmp_path):
         ("0,1,2\n1,1e300,3\n", InputError, "no structure answers so"),
         ("0,1\n1,2\n", ReadError, "lines of 2 numbers"),
         ("0,1,2\n1,2\n", ReadError, "expected frequency"),
-        ("0,1,2\n1,2,x\n", ReadError, "'x' is no number"),
+        ("0,1,2\n1,2,x\n", ReadError, "'x' is not a number"),
     ],
 )
 def test_bad_files(tmp_path, text, error, match):
@@ -115,7 +115,7 @@ def test_what_a_heading_leaves_open_is_noted(tmp_path):
     ("head", "match"),
     [
         ("frequency [Hz],real [m/s/N],imag [m/s/N]", 'line 1: "m/s/N" of the column .* unit of mobility, give that'),
-        ("frequency [Hz],real [mV/N],imag [mV/N]", '"mV/N" of the column "real .mV/N." is no unit of accelerance'),
+        ("frequency [Hz],real [mV/N],imag [mV/N]", '"mV/N" of the column "real .mV/N." is not a unit of accelerance'),
         ("frequency [Hz],real [g/N],imag", "only one of .* states a unit"),
         ("frequency [Hz],magnitude,phase", '"phase" states no unit of angle'),
         ("frequency [Hz],mag [dB re 20 uPa],phase [deg]", '"20 uPa" is not a reference'),
@@ -125,8 +125,8 @@ def test_what_a_heading_leaves_open_is_noted(tmp_path):
         ("omega,real,imag", '"omega" states no unit'),
         ("frequency [m],real,imag", '"frequency .m." states no unit'),
         ("real,imag", "0 columns of frequency"),
-        ("# frequency [kHz], response, g", "speaks of units"),
-        ("units: g/N\nfrequency [Hz],real,imag", 'line 1: "units: g/N" speaks of units'),
+        ("# frequency [kHz], response, g", "mentions units"),
+        ("units: g/N\nfrequency [Hz],real,imag", 'line 1: "units: g/N" mentions units'),
     ],
 )
 def test_headings_that_are_not_read_are_refused(tmp_path, head, match):
@@ -139,7 +139,7 @@ def test_headings_that_are_not_read_are_refused(tmp_path, head, match):
 def test_units_above_complex_numbers_are_refused(tmp_path):
     path = tmp_path / "frf.txt"
     path.write_text("FRF [g/N]\n(1+2j)\n(3+4j)\n")
-    with pytest.raises(ReadError, match=r'line 1: "FRF \[g/N\]" speaks of units'):
+    with pytest.raises(ReadError, match=r'line 1: "FRF \[g/N\]" mentions units'):
         read_frf_text([path], quantity="accelerance", frequency_step=1.0)
 
 
@@ -164,7 +164,7 @@ def test_frequencies_of_uneven_steps_are_fine(tmp_path):
 def test_a_complex_number_in_brackets_has_two_parts(tmp_path, line):
     file = tmp_path / "a.txt"
     file.write_text(f"(1+2j)\n{line}\n")
-    with pytest.raises(ReadError, match="no complex number of two parts"):
+    with pytest.raises(ReadError, match="not a complex number of two parts"):
         read_frf_text([file], quantity="receptance", frequency_step=1.0)
 
 

@@ -217,7 +217,7 @@ def test_the_quantity_is_taken_from_the_label_or_from_the_user(tmp_path):
     frf = read_uff(labelled).frf()
     assert frf.quantity == "receptance"
     np.testing.assert_allclose(frf.values[0, 0], data["data"] * 1e-6)
-    with pytest.raises(ReadError, match="no force \\(type 12\\)"):
+    with pytest.raises(ReadError, match="not a force \\(type 12\\)"):
         read_uff(raw(tmp_path / "c.uff", function(orddenom_spec_data_type=12))).frf()
 
 
@@ -330,7 +330,7 @@ def test_modes_that_cannot_be_used(tmp_path):
     }.items():
         with pytest.raises(ReadError, match=match):
             read_uff(raw(tmp_path / "a.uff", *sets)).modes()
-    with pytest.raises(ReadError, match="analysis type 5, which is no mode"):
+    with pytest.raises(ReadError, match="analysis type 5, which is not a mode"):
         read_uff(raw(tmp_path / "a.uff", shape(analysis_type=5, freq_step_n=1)))
 
 
@@ -340,7 +340,7 @@ def test_files_that_are_none(tmp_path):
         read_uff(path)
     for text in (b"", b"some words\n", bytes(range(256)) * 4):
         path.write_bytes(text)
-        with pytest.raises(ReadError, match="no universal file"):
+        with pytest.raises(ReadError, match="not a universal file"):
             read_uff(path)
 
 
@@ -378,7 +378,7 @@ def test_damaged_data_sets(tmp_path):
         with pytest.raises(ReadError, match=match):
             read_uff(path)
     path.write_text(text.replace("   1.00000000000e+00", "                 nan"))
-    with pytest.raises(ReadError, match="it holds NaN"):
+    with pytest.raises(ReadError, match="it has NaN"):
         read_uff(path)
     with pytest.raises(ReadError, match="must be between 1e-12 and 1e\\+12"):
         read_uff(raw(path, units(0.0)))
@@ -401,7 +401,7 @@ def test_what_cannot_be_written(tmp_path):
 def test_mode_sets_that_do_not_fit():
     with pytest.raises(InputError, match=r"shapes need \(2, 3\)"):
         modes(shapes=np.ones((2, 2)))
-    with pytest.raises(InputError, match="the modes hold NaN"):
+    with pytest.raises(InputError, match="the modes have NaN"):
         modes(loss_factors=np.array([np.nan, 1]))
     with pytest.raises(InputError, match=r"not known at 9\+x; they are at 3\+x"):
         modes().at((Dof(9, "x"),))

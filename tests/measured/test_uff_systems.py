@@ -65,7 +65,7 @@ def test_systems_of_data_set_18_through_each_other(tmp_path, scale, padded):
     ("lines", "match"),
     [
         (system(1, 0, 0, (0, 0, 0), (1, 0, 0), (2, 0, 0)), "are on one line"),
-        (system(1, 0, 4, (0, 0, 0), (1, 0, 0), (0, 0, 1)), "refers to system 4, which the file does not hold"),
+        (system(1, 0, 4, (0, 0, 0), (1, 0, 0), (0, 0, 1)), "refers to system 4, which is not in the file"),
         (system(1, 1, 0, (0, 0, 0), (1, 0, 0), (0, 0, 1)), "cylindrical or spherical"),
         (system(1, 0, 0, (0, 0, 0), (1, 0, 0), (0, 0, 1))[:3], "no three points"),
         (
@@ -192,7 +192,7 @@ def test_labels_that_are_not_known_are_quoted(tmp_path, labels, units):
     path = tmp_path / "a.uff"
     path.write_text(units + frf58(*labels))
     wrong = labels[1] if labels[0] in ("m/s^2", "") else labels[0]
-    with pytest.raises(ReadError, match=f'data set {2 if units else 1}: the unit "{wrong}" of its ordinate is no unit'):
+    with pytest.raises(ReadError, match=f'data set {2 if units else 1}: the unit "{wrong}" .* is not a unit'):
         read_uff(path).frf()
     with pytest.raises(ReadError, match=f'the unit "{wrong}"'):
         read_uff(path).frf(quantity="accelerance")

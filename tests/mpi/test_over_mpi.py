@@ -87,7 +87,7 @@ def test_how_many_processes(monkeypatch):
 def test_what_asks_for_a_factorisation_says_so():
     _, K, _ = bars(3, 1e13)
     assert chosen("mpi:2") == "mpi:2"
-    with pytest.raises(faying.InputError, match="asks for a factorisation.*'mpi:2' has none"):
+    with pytest.raises(faying.InputError, match="asks for a factorisation.*'mpi:2' does not have"):
         factorise(K, "mpi:2")
 
 

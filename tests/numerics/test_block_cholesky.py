@@ -19,7 +19,7 @@ from faying.numerics.block_cholesky import BlockCholesky
     dense=st.booleans(),
 )
 def test_any_blocks_with_any_coupling(sizes, seed, share, dense):
-    """Chains, stars, rings and blocks on their own; what elimination couples anew is no loss."""
+    """Chains, stars, rings and blocks on their own; what elimination couples anew is not a loss."""
     rng = np.random.default_rng(seed)
     starts = np.cumsum([0, *sizes])
     n = starts[-1]

@@ -223,7 +223,7 @@ def test_no_mode_is_left_out_however_great_the_loss(k, eta):
 
 
 def test_a_mode_that_creeps_is_none_that_oscillates():
-    """Two masses on springs, one beyond critical damping: its two real roots are no mode, the other's pair is."""
+    """Two masses on springs, one beyond critical damping: its two real roots are not a mode, the other's pair is."""
     from scipy.sparse import csr_array
 
     M, K = csr_array(np.eye(2)), csr_array(np.diag([1e6, 4e6]))

@@ -216,7 +216,7 @@ def test_every_factorisation_solves(bar, name):
 @pytest.mark.skipif("pardiso" not in available(), reason="PARDISO is not installed")
 @pytest.mark.parametrize("drop", [0, 1, 2])
 def test_blocks_of_nodes_and_single_unknowns_give_the_same_factor(bar, drop):
-    """Matrices of nodes go to PARDISO in blocks of three; a size that is no multiple of three cannot."""
+    """Matrices of nodes go to PARDISO in blocks of three; a size that is not a multiple of three cannot."""
     K, M = sprung(bar, 1e12, 1e12)
     matrix = (K + (2 * np.pi * SHIFT) ** 2 * M).tocsr()
     matrix = matrix[drop:, drop:]
@@ -264,7 +264,7 @@ def test_the_environment_chooses(monkeypatch):
 
 
 def test_a_broken_installation_is_left_out(tmp_path, monkeypatch):
-    """A library that is there but cannot be loaded (built for another NumPy, say) is no library."""
+    """A library that is there but cannot be loaded (built for another NumPy, say) is not a library."""
     (tmp_path / "sksparse").mkdir()
     (tmp_path / "sksparse" / "__init__.py").write_text("raise RuntimeError('built for another NumPy')")
     monkeypatch.syspath_prepend(tmp_path)

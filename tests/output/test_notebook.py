@@ -40,5 +40,5 @@ def test_it_is_the_page_of_faying_view(tmp_path):
 def test_what_cannot_be_shown_is_refused(of, more, words):
     with pytest.raises(faying.InputError, match=words):
         faying.view(two_boxes() if of == "r" else of, **more)
-    with pytest.raises(faying.InputError, match="unit goes with a mesh file"):
+    with pytest.raises(faying.InputError, match="unit is for mesh files"):
         faying.view(two_boxes(), unit="mm")

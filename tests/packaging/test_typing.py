@@ -31,7 +31,7 @@ smooth = faying.law_for(scan=scan, pair=pair, counter="smooth", model="gw-ke")
 result = faying.run("study.toml")
 print(result.frequencies, given.line, smooth.name)
 '''
-# each line is a fault that a checker can find, because the names are no Any
+# each line is a fault that a checker can find, because the names are not Any
 BAD = """import faying
 faying.Mates(3, materials="45 steel")
 faying.Mates.of_fractal(D=2.4, G=1e-10, scan_area=1e-6, materials=7)

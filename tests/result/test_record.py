@@ -66,16 +66,16 @@ def test_a_file_without_a_variable_is_refused_when_it_is_read(written, group, na
 
 def test_a_file_of_another_kind_is_refused(written, tmp_path):
     _, path = written
-    with pytest.raises(faying.ReadError, match="holds a result and no backbone; read it with faying.load"):
+    with pytest.raises(faying.ReadError, match="has a result, not a backbone; read it with faying.load"):
         faying.Backbone.load(path)
     other = tmp_path / "other.nc"
     with h5netcdf.File(other, "w") as file:
         file.dimensions["x"] = 2
         file.create_variable("a", ("x",), data=np.zeros(2))
-    with pytest.raises(faying.ReadError, match="holds none of what faying.load reads"):
+    with pytest.raises(faying.ReadError, match="has nothing that faying.load reads"):
         faying.load(other)
     (tmp_path / "text.nc").write_text("no file of this kind")
-    with pytest.raises(faying.ReadError, match="no NetCDF-4 file"):
+    with pytest.raises(faying.ReadError, match="not a NetCDF-4 file"):
         faying.load(tmp_path / "text.nc")
     with pytest.raises(faying.ReadError, match="no such file"):
         faying.load(tmp_path / "absent.nc")

@@ -91,7 +91,7 @@ def test_a_sound_study(folder):
         ('size = "5 mm"', "size = 5", "keys", "geometry.size = 5", "size = 5"),
         ('preload = "14.9 kN"', 'preload = "14.9 mm"', "keys", "bolt[1].preload", "preload"),
         ('"upper.seat" = {', '"upper.seat" = { up = 3,', "keys", "up is not a key", '"upper.seat"'),
-        ('[part."upper"]', '[part."uper"]', "names", "[part] says nothing of 'upper'", "[part."),
+        ('[part."upper"]', '[part."uper"]', "names", "[part] has no entry for 'upper'", "[part."),
         ('normal = "+z"', "normal = [0, 1, 1]", "selector", "no face of 'upper' fits", '"upper.seat"'),
         ('faces = ["lower.joint", "upper.joint"]', 'faces = ["lower.joint", "top"]', "names", "'top'", "faces = "),
         (

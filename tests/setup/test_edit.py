@@ -20,7 +20,7 @@ TEXTS = [STUDY, *(path.read_text() for path in EXAMPLES)]
 
 
 def leaves(data, path=()):
-    """Every value of a study that is no table, by its path."""
+    """Every value of a study that is not a table, by its path."""
     if isinstance(data, dict):
         for name, inner in data.items():
             yield from leaves(inner, (*path, name))

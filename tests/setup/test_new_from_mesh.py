@@ -82,7 +82,7 @@ def test_the_axis_of_a_section_without_one_is_across_its_plane(tmp_path, mesh):
 
 
 def test_a_section_that_is_held_has_no_force(tmp_path, mesh):
-    """*BOUNDARY shortens the bolt by a length, which is no preload."""
+    """*BOUNDARY shortens the bolt by a length, which is not a preload."""
     held = "*STEP\n*STATIC\n*BOUNDARY\n9001, 1, 1, 0.01\n*CLOAD\n9001, 2, 77.\n*END STEP\n"
     (tmp_path / "m.inp").write_text(deck(mesh, load=held))
     done = call("new", tmp_path / "m.inp", "--unit", "mm", "--yes", "--out", tmp_path / "s.toml")
@@ -198,4 +198,4 @@ def test_a_unit_goes_with_a_mesh_file_alone(tmp_path, mesh):
     assert isinstance(done.exception, faying.InputError)
     assert 'unit = "mm"' in str(done.exception)
     done = call("new", tmp_path / "a.step", "--unit", "mm", "--yes", "--out", tmp_path / "s.toml")
-    assert "a STEP file says its unit" in str(done.exception)
+    assert "a STEP file states its unit" in str(done.exception)

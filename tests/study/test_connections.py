@@ -140,16 +140,16 @@ def test_laws_given_in_full_need_no_surface(folder):
         (SUMMITS | {"model": "gv"}, "no contact law 'gv'"),
         (
             SUMMITS | {"model": "gw-ke", "asperity": "JacksonGreen"},
-            'law: asperity goes with model = "gw"; "gw-ke" has the asperity KogutEtsion',
+            'law: asperity is for model = "gw"; "gw-ke" has the asperity KogutEtsion',
         ),
         ({"model": "jk"}, r"\[surface\] is missing"),
         ({"model": "mb"}, r'\[surface\] is missing; model = "mb" takes its inputs from a surface there'),
         ({"model": "table", "file": "none.csv"}, "law.file: no file"),
         ({"model": "table", "file": "heights.csv"}, "heights.csv, line 1: no head"),
-        (SUMMITS | {"slope": 0.1}, 'law.slope goes with model = "persson", not "gw"'),
+        (SUMMITS | {"slope": 0.1}, 'law.slope is for model = "persson", not "gw"'),
         (SUMMITS | {"slop": "x"}, "law.slop is not a key that a study has"),
         ({"model": "table"}, "law: Table needs file"),
-        ({"model": "jk", "file": "heights.csv"}, 'law.file goes with model = "table", not "jk"'),
+        ({"model": "jk", "file": "heights.csv"}, 'law.file is for model = "table", not "jk"'),
     ],
 )
 def test_laws_that_lack_something(folder, law, fault):
@@ -307,7 +307,7 @@ def test_measured_heights_need_no_surface(folder):
         study(folder, surface=None)
     with pytest.raises(faying.InputError, match="needs gaps_unit"):
         study(folder, law={key: value for key, value in law.items() if key != "gaps_unit"})
-    with pytest.raises(faying.InputError, match='law.gaps goes with model = "gw-measured", not "jk"'):
+    with pytest.raises(faying.InputError, match='law.gaps is for model = "gw-measured", not "jk"'):
         study(folder, law={"model": "jk", "gaps": "heights.csv"})
     with pytest.raises(faying.InputError, match="law.gaps: no file"):
         study(folder, law=law | {"gaps": "none.csv"})
@@ -376,7 +376,7 @@ def test_response_and_damping(folder):
 @pytest.mark.parametrize(
     ("old", "new", "text"),
     [
-        ('to = "2 kHz"', 'to = "50 Hz"', "from = 100 Hz must lie below to = 50 Hz"),
+        ('to = "2 kHz"', 'to = "50 Hz"', "from = 100 Hz must be below to = 50 Hz"),
         ("[[response.output]]", "[[response.autput]]", r"\[\[response.output\]\] is missing"),
         ('from = "100 Hz"', "", "response.from is missing"),
         ("direction = [0, 0, 1]", "direction = [0, 0, 0]", "has no length"),

@@ -50,9 +50,9 @@ END = 'point = ["0 mm", "0 mm", "0 mm"]\ndirection = {}\n'
             TEXT + RESPONSE.format("1 kHz", "0.01") + "[[response.input]]\n" + END.format("[1e-300, 0, 0]"),
             "is only a direction; write numbers about 1",
         ),
-        (changed('G = "1.53e-10 m"', 'G = "1.53e-10 m"\n[uncertain]\nE = {}\n'), "uncertain.E = {} is no distribution"),
+        (changed('G = "1.53e-10 m"', 'G = "1.53e-10 m"\n[uncertain]\nE = {}\n'), "E = {} is not a distribution"),
         (TEXT + "[uncertain]\npreload = {}\n", "uncertain.preload = {} should be {tightening"),
-        (TEXT + "[uncertain.material]\n", "uncertain.material is nothing that can scatter"),
+        (TEXT + "[uncertain.material]\n", "uncertain.material cannot scatter"),
         (
             changed('[part.block_b]\nmaterial = "45 steel"', "[part.block_b]") + '[uncertain]\nE = "2 GPa +- 1 GPa"\n',
             "part.block_b.material is missing",

@@ -48,14 +48,14 @@ def test_element_sets_can_be_given_the_names_of_parts(tmp_path):
 
 def test_faults(tmp_path):
     with pytest.raises(
-        faying.InputError, match='geometry.unit is missing: a mesh file does not say its unit; .* unit = "mm"'
+        faying.InputError, match='geometry.unit is missing: a mesh file does not state its unit; .* unit = "mm"'
     ):
         study(tmp_path, TEXT.replace('unit = "mm"\n', ""))
-    with pytest.raises(faying.InputError, match="geometry.size goes with a STEP file"):
+    with pytest.raises(faying.InputError, match="geometry.size is for a STEP file"):
         study(tmp_path, TEXT.replace('unit = "mm"', 'unit = "mm"\nsize = "5 mm"'))
     with pytest.raises(faying.InputError, match="geometry.mesh: no file"):
         study(tmp_path, TEXT.replace("model.inp", "other.inp"))
-    with pytest.raises(faying.InputError, match="part 'roof' is not in model.inp; it holds p0, p1"):
+    with pytest.raises(faying.InputError, match="part 'roof' is not in model.inp; it has p0, p1"):
         run(study(tmp_path, TEXT.replace("[part.p1]", "[part.roof]")))
     with pytest.raises(faying.InputError, match="in um the structure is .* m long; is that its unit"):
         run(study(tmp_path, TEXT.replace('unit = "mm"', 'unit = "um"')))

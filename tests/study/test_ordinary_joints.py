@@ -90,7 +90,7 @@ def test_a_thread_longer_than_its_hole_is_refused(screwed, fitted):
     with pytest.raises(faying.InputError, match="is the wall of a hole; give the face under the head first"):
         turned.placed(mesh)
     seats = (screwed.bolts[0].faces[0], fitted[0].joints[0].faces[1])
-    with pytest.raises(faying.InputError, match="engaged goes with a tapped hole"):
+    with pytest.raises(faying.InputError, match="engaged is for a tapped hole"):
         replace(deep, faces=seats).placed(mesh)
 
 

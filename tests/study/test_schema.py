@@ -56,7 +56,7 @@ def test_the_template_is_a_study(folder):
             },
             "nu = 0.5, and solid elements lock near 0.5; give at most 0.495",
         ),
-        ({"surface__D": 3.2}, "surface.D = 3.2: the dimension of a surface lies between 2 and 3"),
+        ({"surface__D": 3.2}, "surface.D = 3.2: the dimension of a surface is between 2 and 3"),
         ({"surface__D": float("nan")}, "surface.D = nan should be a plain finite number"),
         ({"surface__G": "1.53e-10"}, r'surface.G = "1.53e-10" has no unit'),
         ({"surface__D": None}, r"give scan, or D, G and scan_area \(D missing\)"),

@@ -66,7 +66,7 @@ BOLT = {"preload": "6 kN"}
 @pytest.mark.parametrize(
     ("selector", "fault"),
     [
-        ({"part": "upper"}, r"joint\[1\].faces\[1\] names a part and nothing of its face; add normal"),
+        ({"part": "upper"}, r"joint\[1\].faces\[1\] gives a part but no face of it; add normal"),
         (
             {"part": "upper", "normal": "up"},
             r'normal = "up" should be one of \+x, -x, \+y, -y, \+z, -z, or three numbers',
@@ -74,7 +74,7 @@ BOLT = {"preload": "6 kN"}
         ({"part": "upper", "normal": [0, 0, 0]}, "has no length"),
         ({"part": "upper", "nearest": [0, 0, 5]}, "has no unit"),
         ({"part": "upper", "number": 0}, "whole number from 1 to"),
-        ({"part": "upper", "number": 1, "within": "1 mm"}, "within goes with nearest"),
+        ({"part": "upper", "number": 1, "within": "1 mm"}, "within needs nearest"),
         ({"part": "upper", "touch": "lower"}, "did you mean touching"),
         ({"part": "upper", "number": 1, "all": "yes"}, "should be true or false"),
         ({"normal": "+z"}, r"joint\[1\].faces\[1\].part is missing"),

@@ -172,8 +172,8 @@ def test_damaged_x3p(rough, tmp_path):
     good = write_scan(rough, tmp_path / "good.x3p")
     xml = xml_of(good)
     cases = {
-        "holds no main.xml": {"main_xml": None},
-        "holds no bindata": {"bindata_data_bin": None},
+        "has no main.xml": {"main_xml": None},
+        "has no bindata": {"bindata_data_bin": None},
         "checksum": {"bindata_data_bin": b"\0" * (40 * 56 * 4)},
         "not well-formed": {"main_xml": xml[:-40]},
         "document type": {"main_xml": xml.replace("<p:ISO", '<!DOCTYPE a [<!ENTITY b "c">]><p:ISO', 1)},
@@ -225,7 +225,7 @@ def test_x3p_with_a_mask_and_with_heights_in_the_xml(tmp_path):
 def test_writing_refuses_what_it_cannot_do(rough, tmp_path):
     with pytest.raises(InputError, match="written as"):
         write_scan(rough, tmp_path / "a.sur")
-    with pytest.raises(InputError, match="text holds no unit"):
+    with pytest.raises(InputError, match="a text file states no unit"):
         write_scan(rough, tmp_path / "a.csv")
     with pytest.raises(InputError, match="cannot mark missing"):
         write_scan(rough, tmp_path / "a.x3p", precision="I")
@@ -261,7 +261,7 @@ def test_a_zip_archive_without_main_xml_is_no_damaged_x3p(tmp_path):
         archive.writestr("index.xml", "<xml/>")
     with pytest.raises(ReadError, match="of no format that can be read|install SurfaceTopography"):
         read_scan(path)
-    with pytest.raises(ReadError, match=r"holds no main.xml"):
+    with pytest.raises(ReadError, match=r"has no main.xml"):
         read_scan(path.rename(tmp_path / "a.x3p"))
 
 

@@ -23,7 +23,7 @@ pytestmark = [
 ]
 MODES = 8
 K_N, K_T = 2e13, 1e13  # Pa/m
-SCALE = 0.01  # of the preload in CalculiX, whose stiffness under stress is no part of ours; the contact is linear
+SCALE = 0.01  # of the preload in CalculiX, whose stiffness under stress ours lacks; the contact is linear
 
 
 def study_of(name, folder):

@@ -329,7 +329,7 @@ def _seats(case: Case, index: int, numbers: BoltNumbers, force: float, choice: B
     area = force / pressure if isfinite(pressure) and pressure > 0 else None
     ring = seat_ring(case.structure.mesh, fitted) if isinstance(fitted, FittedBolt) else None
     thread = fitted.thread if isinstance(fitted, FittedBolt) else None
-    seat = "bolt.seat, of a bolt that is no part of the mesh"
+    seat = "bolt.seat, of a bolt that is not in the mesh"
     found = [seat_limit(case.structure, face) for face in fitted.bolt.faces]
     softest = min((one for one in found if one is not None), key=lambda one: one[0], default=(None, "bearing limit"))
     return [

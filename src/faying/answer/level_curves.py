@@ -200,7 +200,7 @@ def level_curves(
     asked = {"amplitude": amplitude, "rest_damping": rest_damping}
     choice = chosen(study, friction, asked)
     if choice.rest_damping == "law":
-        raise InputError('rest_damping = "law" goes with harmonic balance; give a number, such as 0.001')
+        raise InputError('rest_damping = "law" is for harmonic balance; give a number here, such as 0.001')
     (mu,) = friction_of(study, replace(choice, friction=choice.friction[:1]))
     first, last = choice.amplitude
     levels = np.geomspace(first, last, max(2, round(EACH_DECADE * np.log10(last / first)) + 1))

@@ -52,7 +52,7 @@ def load_cases(
         if preload is not None:
             raise InputError("preload: a state has its own preload; leave it out, or solve the structure under another")
         if intervals:
-            raise InputError("intervals: a state says nothing of scatter; give a study in place of it")
+            raise InputError("intervals: a state has no scatter; give a study in place of it")
         if loads is None:
             raise InputError("loads: a state has no load cases of its own; give loads=[Load(...)]")
         progress = Progress(STAGES + len(loads) * modes, report)

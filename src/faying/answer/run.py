@@ -67,7 +67,9 @@ def run(
     if refine is not None:
         return refined(study, tolerance_of(refine), lambda finer: run(finer, report=report, engine=engine))
     if study.backbone is not None and is_mpi(chosen(study.modes.solver)):
-        raise InputError("[backbone] asks for a factorisation; leave it out, or the processes of MPI")
+        raise InputError(
+            "[backbone] needs a factorisation, which MPI does not have; leave out [backbone], or the MPI processes"
+        )
     if study.backbone is not None:
         friction_of(study, study.backbone)  # raises, before the work, where nothing can slip
     progress = Progress(len(stages(study)), report)

@@ -276,7 +276,7 @@ def _key_of(path: KeyPath, data: Mapping[str, Any]) -> Key:
     keys = _keys(inner, held if isinstance(held, Mapping) else {})
     found = keys.get(str(path[-1]), keys.get(NAME))
     if not isinstance(found, Key):
-        raise InputError(f"{name_of(path)} is no key of a study")
+        raise InputError(f"{name_of(path)} is not a key of a study")
     return found
 
 
@@ -290,7 +290,7 @@ def _inner_of(path: KeyPath, data: Mapping[str, Any]) -> Inner:
         if inner.free:
             return inner
         if not isinstance(found, Inner):
-            raise InputError(f"{name_of(path)} is no table of a study")
+            raise InputError(f"{name_of(path)} is not a table of a study")
         inner = found
     return inner
 
@@ -385,7 +385,9 @@ def _read(text: str, shape: Shape, key: Key) -> Any:
         try:
             return tomllib.loads(f"a = {text}")["a"]
         except ValueError:
-            raise InputError(f"{text} is no list or table as TOML writes it, such as {key.kind or '[1, 2]'}") from None
+            raise InputError(
+                f"{text} is not a list or table as TOML writes it, such as {key.kind or '[1, 2]'}"
+            ) from None
     if shape == "truth" or (shape == "any" and text in ("true", "false")):
         return {"true": True, "false": False}.get(text, text)
     if shape in ("number", "any"):

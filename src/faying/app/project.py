@@ -37,7 +37,7 @@ class Project:
         """The project of a folder or of a study file. Raises InputError where it is neither, or has several studies."""
         if place.is_file():
             if place.suffix != ".toml":
-                raise InputError(f"{place} is no study; give a folder, or a study file that ends in .toml")
+                raise InputError(f"{place} is not a study; give a folder, or a study file that ends in .toml")
             return cls(folder=place.resolve().parent, study_name=place.name)
         if not place.is_dir():
             raise InputError(f"no folder {place}; make it first, or give another")
@@ -142,7 +142,8 @@ def checked_name(name: str) -> str:
     """A bare file name. Raises InputError for folders, hidden files and characters that not every system takes."""
     if not NAME.fullmatch(name) or name.endswith((" ", ".")):
         raise InputError(
-            f"{name[:80]!r} is no file name that is taken here; use letters, digits, blanks and . _ - + ( ), at most "
+            f"{name[:80]!r} is not a file name that Faying accepts; use letters, digits, blanks and . "
+            "_ - + ( ), at most "
             "119, with no folder and no dot at either end"
         )
     return name

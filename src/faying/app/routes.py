@@ -49,9 +49,9 @@ class Request:
         try:
             found = json.loads(self.body.read(self.size))
         except (ValueError, RecursionError):
-            raise InputError("the request is no JSON") from None
+            raise InputError("the request is not JSON") from None
         if not isinstance(found, dict):
-            raise InputError("the request is no table of JSON")
+            raise InputError("the request is not a table of JSON")
         return found
 
 
@@ -117,7 +117,7 @@ class Session:
         if not isinstance(text, str) or not isinstance(path, list) or not path:
             raise InputError("the request lacks text, or the path of a key")
         if not all(isinstance(one, str | int) and not isinstance(one, bool) for one in path):
-            raise InputError("the path of a key holds names and places of lists alone")
+            raise InputError("the path of a key has names and places in lists only")
         place = tuple(path)
         if action == "add":
             return {"text": added(text, place)}

@@ -31,7 +31,7 @@ TYPES = {
     ".png": "image/png",
     ".csv": "text/csv; charset=utf-8",
 }
-DIGITS = 18  # of the length of a request, beyond which it is no size
+DIGITS = 18  # of the length of a request, beyond which it is not a size
 PAGE = Path(__file__).parent / "page"
 OWN = ("app.css", "app.js", "base.js", "explore.js", "form.js", "runs.js")
 # the page's files by their name in the address, "" for the page itself
@@ -107,7 +107,7 @@ class _Handler(BaseHTTPRequestHandler):
         if path.startswith("api/"):
             found = answered(self.server.session, self.command, path.removeprefix("api/"), request)
             if found is None:
-                self._refuse(404, "there is nothing of this name")
+                self._refuse(404, "there is no file or address of this name")
             else:
                 self.close_connection = self.close_connection or bool(size)  # what was not read is not a request
                 self._send(200, "application/json", found, PAGE_POLICY)
@@ -136,7 +136,7 @@ class _Handler(BaseHTTPRequestHandler):
             return 411, "send a Content-Length"
         length = self.headers.get("Content-Length", "0")
         if not (length.isascii() and length.isdigit()):
-            return 400, "the Content-Length is no number"
+            return 400, "the Content-Length is not a number"
         if len(length) > DIGITS or int(length) > LARGEST:
             return 413, f"a file may have {LARGEST >> 30} GB at most; put larger ones into the folder yourself"
         return None
@@ -160,7 +160,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _send_asset(self, name: str) -> None:
         if name not in ASSETS:
-            self._refuse(404, "there is nothing of this name")
+            self._refuse(404, "there is no file or address of this name")
             return
         file = ASSETS[name]
         self._send(200, TYPES[file.suffix], file.read_bytes(), PAGE_POLICY)

@@ -31,7 +31,7 @@ def friction_of(study: Study, choice: BackboneChoice) -> list[tuple[float, ...]]
     for joint in study.joints:
         if joint.friction is None:
             raise InputError(
-                f"joint {joint.name!r} has no friction, without which nothing slips; give friction = 0.2 "
+                f"joint {joint.name!r} has no friction, and without it nothing slips; give friction = 0.2 "
                 "(--friction 0.2), or friction in its [[joint]] or in [backbone]"
             )
         check_friction(joint.friction)

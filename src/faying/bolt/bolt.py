@@ -164,7 +164,7 @@ class Bolt:
     shank: float | None
     head: Head
     friction: tuple[float, float] | None
-    part: ClassVar[None] = None  # it is no part of the mesh
+    part: ClassVar[None] = None  # it is not a part of the mesh
 
     def __init__(
         self,
@@ -189,7 +189,7 @@ class Bolt:
         if (diameter is None) != (material is None):
             raise InputError(f"{what} needs both diameter and material, or neither (a bolt without stiffness)")
         if faces[0] == faces[1]:
-            raise InputError(f"{what}: both faces are {faces[0]!r}; name the seats of its head and of its nut")
+            raise InputError(f"{what}: both faces are {faces[0]!r}; give the seats of its head and of its nut")
         if at is not None and len(at) != 3:
             raise InputError(f"{what}: at = {shortened(at)}; give the three coordinates of a point on its axis")
         values = {
@@ -290,7 +290,7 @@ class Bolt:
             return self._screwed(mesh, walls[1])
         if self.engaged is not None:
             raise InputError(
-                f"bolt {self.name!r}: engaged goes with a tapped hole, and {second!r} is not the wall of one; leave it "
+                f"bolt {self.name!r}: engaged is for a tapped hole, and {second!r} is not the wall of one; leave it "
                 "out, or name that wall as the second face"
             )
         if mesh.face_part[first] == mesh.face_part[second] and self.diameter is None:

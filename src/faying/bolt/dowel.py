@@ -45,7 +45,7 @@ class Dowel:
         ends: Points (3,) [m] of the axis where the pin begins and ends; where its holes do if None.
 
     Raises:
-        InputError: Fewer than two walls, one wall twice, or a length that is none; when it is fitted, a face that is no
+        InputError: Fewer than two walls, one wall twice, or a length that is not one; at the fit, a face that is not a
             hole, holes that are not on one axis or not of one diameter, two holes of one part or at one depth, or a
             pin that ends before it reaches a hole.
     """

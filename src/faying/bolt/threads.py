@@ -221,7 +221,7 @@ class Fastener:
 
     def __post_init__(self) -> None:
         if self.grade not in PROOF:
-            raise InputError(f'grade "{self.grade}" is no property class of ISO 898-1; there are {", ".join(PROOF)}')
+            raise InputError(f'grade "{self.grade}" is not a property class of ISO 898-1; there are {", ".join(PROOF)}')
         if not LEAST <= self.thread.diameter <= GREATEST:
             raise InputError(
                 f"thread {self.thread}: the property classes of ISO 898-1 cover M1.6 to M39; leave out grade"

@@ -237,11 +237,11 @@ def name_faults(
     file = study.geometry.file.name
     held = ", ".join(parts)
     unsaid = [name for name in parts if name not in study.parts]
-    faults = [("part", f"[part] says nothing of {name!r}, which {file} holds") for name in unsaid]
+    faults = [("part", f"[part] has no entry for {name!r}, which is in {file}") for name in unsaid]
     absent = [name for name in study.parts if name not in parts]
-    faults += [(f"part.{name}", f"part {name!r} is not in {file}; it holds {held}") for name in absent]
+    faults += [(f"part.{name}", f"part {name!r} is not in {file}; it has {held}") for name in absent]
     faults += [
-        (f"bolt[{k}].part", f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {file}; it holds {held}")
+        (f"bolt[{k}].part", f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {file}; it has {held}")
         for k, bolt in enumerate(study.bolts, 1)
         if bolt.part is not None and bolt.part not in parts
     ]
@@ -320,7 +320,7 @@ def _heated(study: Study) -> list[tuple[str, str]]:
     return [
         (
             f"load[{k}].temperature",
-            f"load {load.name!r}: temperature of {name!r}, which is no part and no bolt; there are "
+            f"load {load.name!r}: temperature of {name!r}, which is neither a part nor a bolt; there are "
             f"{', '.join(map(repr, known))}",
         )
         for k, load in enumerate(study.load_cases, 1)

@@ -68,7 +68,7 @@ def law_range(label: str) -> LawRange:
 
 
 def is_soft(first: Material, second: Material) -> bool:
-    """Whether one of two materials is a metal softer than Brinell's 1.3 GPa that is no steel.
+    """Whether one of two materials is a metal softer than Brinell's 1.3 GPa that is not a steel.
 
     A steel of which only a yield strength is known counts as steel, though 2.8 times that strength may be less.
     """

@@ -38,7 +38,7 @@ def read(geometry: Path, unit: str | None) -> Any:
         from faying.geometry.face_facts import read_facts
 
         if unit is not None:
-            raise InputError("--unit goes with a mesh file; a STEP file says its unit")
+            raise InputError("--unit is for mesh files; a STEP file states its unit, so leave --unit out")
         return read_facts(geometry)
     from faying.decks.meshfile import read_mesh
     from faying.geometry.mesh_facts import mesh_facts

@@ -64,7 +64,7 @@ def command(
     if study is not None:
         for name, option in (("--mass", mass), ("--points", points)):
             if option is not None:
-                raise InputError(f"{name} goes with --stiffness; a study brings its own")
+                raise InputError(f"{name} is for --stiffness; a study has its own")
         given = Assembled.of_study(Study.read(study))
     else:
         assert stiffness is not None

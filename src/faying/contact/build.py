@@ -169,7 +169,7 @@ def check_entries(kind: LawKind, given: Collection[str]) -> None:
     for name in given:
         if name in kind.fixed:
             raise InputError(
-                f'{name} goes with model = "{kind.law.name.lower()}"; "{kind.label.lower()}" has the {name} '
+                f'{name} is for model = "{kind.law.name.lower()}"; "{kind.label.lower()}" has the {name} '
                 f"{kind.fixed[name]}"
             )
         if name not in known:

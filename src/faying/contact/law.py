@@ -66,7 +66,7 @@ def _floats(values: ArrayLike, name: str, unit: str) -> Array:
 
 
 def _entry(name: str, value: object, parameter: Parameter) -> str:
-    """One parameter of a law as text; empty where it is not given or is no number and no word."""
+    """One parameter of a law as text; empty where it is not given or is neither a number nor a word."""
     if isinstance(value, bool) or not isinstance(value, int | float | str) or value == "":
         return ""
     if isinstance(value, str):

@@ -56,7 +56,7 @@ class Mates(Summary):
         cache: folder that keeps solved contacts; None keeps nothing.
 
     Raises:
-        InputError: for what is no scan, unknown materials, two rigid faces, and a line scan without scan_area.
+        InputError: for what is not a scan, unknown materials, two rigid faces, and a line scan without scan_area.
 
     `Mates.of_fractal` and `Mates.of_fit` take D and G in place of a scan, `Mates.of_surface` other numbers.
     """

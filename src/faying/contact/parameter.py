@@ -12,7 +12,7 @@ import numpy as np
 from faying import units
 from faying.errors import InputError, shown
 
-FARTHEST = 1e308  # whole numbers beyond it are no floats
+FARTHEST = 1e308  # whole numbers beyond it are not floats
 TEXT, FILE, TABLE = "text", "file", "table"  # in place of a unit: a word, the name of a file, an array
 
 
@@ -22,7 +22,7 @@ class Parameter:
     """One parameter of a law.
 
     Args:
-        unit: SI unit; "" for a plain number, "text", "file" or "table" for what is no number.
+        unit: SI unit; "" for a plain number, "text", "file" or "table" for what is not a number.
         meaning: a few words for people.
         least, greatest: the allowed range in SI units; ends tells which ends belong to it: "()", "[)", "(]", "[]".
         choices: the words that are allowed, also beside numbers.

@@ -43,7 +43,7 @@ class Faces:
         made: the rough surface itself, in place of what would be made from all others.
 
     Raises:
-        InputError: for what is no scan, another counter, a line scan without scan_area, or numbers out of range.
+        InputError: for what is not a scan, another counter, a line scan without scan_area, or numbers out of range.
     """
 
     face: Scan | Profile | FractalSurface

@@ -38,7 +38,7 @@ def read(path: Path) -> RawMesh:
     for block in blocks(path):
         options, last = block.options, block
         if opened in ("PART", "INSTANCE") and block.keyword in ("PART", "INSTANCE", "ASSEMBLY", "END ASSEMBLY"):
-            raise ReadError(f"{block.where}: *{block.keyword} stands before the *END {opened} of what began before it")
+            raise ReadError(f"{block.where}: *{block.keyword} comes before the *END {opened} of what began before it")
         if block.keyword == "PART":
             scope, opened = parts.setdefault(options.get("NAME", ""), Scope()), block.keyword
         elif block.keyword in ("END PART", "END INSTANCE"):
@@ -52,8 +52,8 @@ def read(path: Path) -> RawMesh:
             same = next((one for one in parts if one.upper() == part.upper()), None)
             if same is None:
                 raise ReadError(
-                    f"{block.where}: instance {name!r} of the part {part!r}, which the file does not hold; "
-                    f"it holds {', '.join(parts) or 'none'}"
+                    f"{block.where}: instance {name!r} of the part {part!r}, which is not in the file; "
+                    f"it has {', '.join(parts) or 'none'}"
                 )
             scope, opened = placed(parts[same], block), block.keyword
             instances[name] = scope
@@ -171,14 +171,14 @@ def _resolved(
         for given, what in upper[name]:
             instance = as_written.get(given.upper())
             if instance is None:
-                raise ReadError(f"set {written[name]!r} is of the instance {given!r}, which the file does not hold")
+                raise ReadError(f"set {written[name]!r} is of the instance {given!r}, which is not in the file")
             if isinstance(what, NumberSpan):
                 there = np.intersect1d(what.numbers + shifts[instance], instances[instance][1])
                 found.append(there)
                 if what.numbers[-1] + shifts[instance] > instances[instance][1].max(initial=0):
                     notes.append(
                         f"the set {written[name]!r} is generated up to {what.numbers[-1]}, past the last number of the "
-                        f"file; it holds the {len(there)} that there are"
+                        f"file; those in the file, {len(there)}, are taken"
                     )
             elif isinstance(what, str):
                 label = (f"{instance}.{what}" if instance else what).upper()
@@ -188,14 +188,14 @@ def _resolved(
                     continue
                 if label not in upper or label in (*seen, name):
                     raise ReadError(
-                        f"set {written[name]!r} names the set {what!r}, which the file does not hold or is part of it"
+                        f"set {written[name]!r} names the set {what!r}, which is not in the file or is part of it"
                     )
                 found.append(numbers(label, (*seen, name)))
             else:
                 found.append(what + shifts[instance])
                 absent = np.setdiff1d(found[-1], everything) - shifts[instance]
                 if absent.size:
-                    notes.append(f"the set {written[name]!r} names numbers that the file does not hold: {few(absent)}")
+                    notes.append(f"the set {written[name]!r} names numbers that are not in the file: {few(absent)}")
         done[name] = np.unique(np.concatenate(found))
         return done[name]
 
@@ -216,17 +216,17 @@ def _surfaces(path: Path, top: Scope, upper: dict[str, Index], raised: Mapping[s
             one = int(what) if what.isdigit() else None if what.upper() in upper else _numbered(what, raised)
             numbers = upper.get(what.upper()) if one is None else index([one])
             if numbers is None:
-                raise ReadError(f"surface {name!r} names the element set {what!r}, which {path.name} does not hold")
+                raise ReadError(f"surface {name!r} names the element set {what!r}, which is not in {path.name}")
             if not len(numbers) or np.isin(numbers, others).all():
                 lost += 1
                 continue
             numbers = numbers[~np.isin(numbers, others)]
             if side and not re.fullmatch(r"S[1-6]", side):
-                raise ReadError(f"surface {name!r} names the side {side!r}; the sides of solids are S1 to S6")
+                raise ReadError(f"surface {name!r} has the side {side!r}; the sides of solids are S1 to S6")
             pairs.append(np.column_stack([numbers, np.full(len(numbers), int(side[1:]) - 1 if side else -1)]))
         if lost:
             top.notes.append(
-                f"the surface {name!r} lies on elements that are no solids in {lost} lines, which are left out"
+                f"the surface {name!r} lies on elements that are not solids in {lost} lines, which are left out"
             )
         if pairs or not lost:
             side_sets[name] = np.concatenate(pairs or [np.zeros((0, 2), dtype=np.int64)])

@@ -74,7 +74,7 @@ _LEFT_OUT: dict[str, Sequence[int]] = {
     "CDAMP5": (2, 3),
     "CGEN": (),
 }
-# cards that begin with C and are no elements: loads, output, aerodynamics, symmetry, laws
+# cards that begin with C and are not elements: loads, output, aerodynamics, symmetry, laws
 _NO_ELEMENTS = (
     *("CSET", "CEND", "CONV", "CLOAD", "CBARAO", "CAERO", "CMFREE", "CONTRLT", "CREEP", "CSCHD", "CSSCHD", "CSUP"),
     *("CYAX", "CYSUP", "CYSYM", "CAMPBLL", "COMPUDS", "CINTC"),
@@ -224,7 +224,7 @@ class Bulk:
         self.solids.setdefault(kind, []).append((int(fields[0]), ordered))
         self.solid[int(fields[0])] = (kind, ordered)
         if fields[1] and not fields[1].isdigit():
-            raise ReadError(f"element {fields[0]}: its property {fields[1]!r} is no whole number")
+            raise ReadError(f"element {fields[0]}: its property {fields[1]!r} is not a whole number")
         self.bodies.setdefault(f"part{fields[1] or fields[0]}", []).append(int(fields[0]))
 
     def place(self, grid: int, seen: tuple[str, ...] = ()) -> Array:
@@ -250,7 +250,7 @@ class Bulk:
         z = along - origin
         y = np.cross(z, across - origin)
         if np.linalg.norm(y) < 1e-9 * np.linalg.norm(z) * np.linalg.norm(across - origin) or not np.any(z):
-            raise ReadError(f"{label}: its three points coincide or lie on one line")
+            raise ReadError(f"{label}: its three points coincide or are on one line")
         z, y = z / np.linalg.norm(z), y / np.linalg.norm(y)
         if name[5] == "C":
             angle = np.deg2rad(at[1])

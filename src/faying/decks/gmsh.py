@@ -52,7 +52,7 @@ class _Words:
         count = self.ints(1)[0]
         lines = sum(bool(line.strip()) for line in self.data.splitlines()) - 1
         if lines != count:
-            raise ReadError(f"${self.name} says {count} records and holds {lines} lines of them; is the file complete?")
+            raise ReadError(f"${self.name} says {count} records and has {lines} lines of them; is the file complete?")
         return count
 
     sizes = ints
@@ -98,14 +98,14 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
     words = head.split()
     after = rest.partition(b"$")[0].strip() if words[1:2] == [b"0"] else b""
     if after:
-        raise ReadError(f"{path}: {after[:40].decode(errors='replace')!r} stands in $MeshFormat, which holds one line")
+        raise ReadError(f"{path}: {after[:40].decode(errors='replace')!r} is in $MeshFormat, which has one line")
     if len(words) != 3 or words[0] not in (b"2.2", b"4.1") or words[1] not in (b"0", b"1") or not words[2].isdigit():
         kind = head.decode("utf-8", errors="replace")[:40]
         raise ReadError(f"{path} has format {kind!r}; save it in 4.1 or 2.2 (Mesh.MshFileVersion)")
     order = "<"
     if words[1] == b"1":
         if words[2] != b"8" or rest[:4] not in (b"\1\0\0\0", b"\0\0\0\1"):
-            raise ReadError(f"{path} is a binary file whose order of bytes is not known; is the file complete?")
+            raise ReadError(f"{path} is a binary file of unknown byte order; is the file complete?")
         order = "<" if rest[:1] == b"\1" else ">"
     if words[1] == b"0":
         _check_sections(data, path)
@@ -114,7 +114,7 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
         begin, end = b"$" + name.encode() + b"\n", b"$End" + name.encode()
         start = data.find(begin)
         if start < 0 and name in ("Nodes", "Elements"):
-            raise ReadError(f"{path} has no ${name}; the file is cut short or holds no mesh")
+            raise ReadError(f"{path} has no ${name}; the file is cut short or has no mesh")
         if start < 0:
             continue
         stop = data.find(end, start)
@@ -158,11 +158,13 @@ def _names(words: _Words | _Bytes | None) -> dict[tuple[int, int], str]:
     count, *lines = words.data.splitlines() or [b""]
     if count.strip() != str(len(lines)).encode():
         shown = count.decode(errors="replace")[:60]
-        raise ReadError(f"$PhysicalNames announces {shown!r} names and holds {len(lines)}; is the file complete?")
+        raise ReadError(f"$PhysicalNames announces {shown!r} names and has {len(lines)}; is the file complete?")
     for line in lines:
         found = re.fullmatch(rb'\s*([0-3])\s+(\d+)\s+"?([^"]*)"?\s*', line)
         if found is None:
-            raise ReadError(f"$PhysicalNames: {line.decode(errors='replace')[:60]!r} is no dimension, number and name")
+            raise ReadError(
+                f"$PhysicalNames: {line.decode(errors='replace')[:60]!r} should be dimension, number and name"
+            )
         out[int(found[1]), int(found[2])] = found[3].decode("utf-8", errors="replace").strip()
     return out
 
@@ -183,7 +185,7 @@ def read(path: Path) -> RawMesh:
     except ReadError:
         raise
     except (ValueError, OverflowError) as fault:
-        raise ReadError(f"{path} holds something that is not a number ({fault}); is the file complete?") from None
+        raise ReadError(f"{path} has something that is not a number ({fault}); is the file complete?") from None
     solids: dict[str, list[tuple[int, list[int]]]] = {}
     bodies: dict[str, list[int]] = {}
     faces: dict[str, list[list[int]]] = {}
@@ -202,7 +204,7 @@ def read(path: Path) -> RawMesh:
         _used_up(sections.get(name), path)
     own, same = _distinct(bodies)
     if not solids:
-        raise ReadError(f"{path} holds no solid elements; mesh the volumes (gmsh -3) and save them all")
+        raise ReadError(f"{path} has no solid elements; mesh the volumes (gmsh -3) and save them all")
     return RawMesh(
         numbers=numbers,
         points=points,
@@ -212,11 +214,11 @@ def read(path: Path) -> RawMesh:
         extra=index(extra),
         notes=(
             *(
-                f"the physical volumes {other!r} and {name!r} hold the same elements; the part is called {name!r}"
+                f"the physical volumes {other!r} and {name!r} have the same elements; the part is called {name!r}"
                 for other, name in same.items()
             ),
             *(
-                f"the physical {'volume' if dimension == 3 else 'surface'} {name!r} holds no elements"
+                f"the physical {'volume' if dimension == 3 else 'surface'} {name!r} has no elements"
                 for (dimension, _), name in names.items()
                 if dimension > 1 and name not in (bodies if dimension == 3 else faces)
             ),
@@ -229,7 +231,7 @@ def _used_up(words: _Words | _Bytes | None, path: Path) -> None:
     if isinstance(words, _Words) and words.at < len(words.words):
         shown = b" ".join(words.words[words.at : words.at + 6]).decode("utf-8", errors="replace")
         raise ReadError(
-            f"{path}: ${words.name} goes on after its last record with {shown[:60]!r}; is a line there twice, or a "
+            f"{path}: ${words.name} continues after its last record with {shown[:60]!r}; is a line there twice, or a "
             "count wrong?"
         )
 

@@ -37,7 +37,7 @@ def read(path: Path) -> RawMesh:
     sets: dict[str, dict[str, np.ndarray]] = {"NODE": {}, "ELEM": {}}
     extra: list[int] = []
     turned: list[int] = []
-    dropped: dict[int, str] = {}  # numbers and types of elements that are no solids
+    dropped: dict[int, str] = {}  # numbers and types of elements that are not solids
     commands: list[str] = []
     bolts, others = _Bolts(), _Others(path)
     k = 0
@@ -103,13 +103,13 @@ class _Others:
         led = before.startswith("(") or "BLOCK" in before.partition(",")[0]  # RLBLOCK has two lines of forms
         if line.startswith("(") and not led:
             raise ReadError(
-                f"{self.path.name}, line {k + 1}: {line!r} tells the form of a block, and the line before is no "
+                f"{self.path.name}, line {k + 1}: {line!r} gives the form of a block, but the line before is not a "
                 "command of one (NBLOCK, EBLOCK, CMBLOCK, ...); is it missing?"
             )
         numbers = re.fullmatch(r"[-+]?[\d.]+(?:[eEdD][-+]?\d+)?(?:[\s-]+[-+]?[\d.eEdD+-]+)*", line) is not None
         if numbers and line != "-1" and self.last != k - 1:
             raise ReadError(
-                f"{self.path.name}, line {k + 1}: {line[:40]!r} stands in no block; does the block before it hold more "
+                f"{self.path.name}, line {k + 1}: {line[:40]!r} is not in a block; does the block before it have more "
                 "lines than its head says?"
             )
         self.last = k
@@ -133,7 +133,7 @@ def _lacking(
         for name, some in sets[kind].items():
             absent = sorted({*some.tolist()} - there)
             if absent:
-                out.append(f"the component {name!r} names {what} that the file does not hold: {few(absent)}")
+                out.append(f"the component {name!r} names {what} that are not in the file: {few(absent)}")
     return out
 
 
@@ -199,7 +199,7 @@ def _types(lines: list[str], k: int, words: list[str], kinds: dict[int, str]) ->
         kinds[int(line[:width])] = re.sub(r"\D", "", name)
         k += 1
     if words[1].isdigit() and int(words[1]) != k - start - 2:
-        raise ReadError(f"line {start + 1}: ETBLOCK says {words[1]} types and holds {k - start - 2}; is it complete?")
+        raise ReadError(f"line {start + 1}: ETBLOCK says {words[1]} types and has {k - start - 2}; is it complete?")
     return k + 1
 
 
@@ -256,9 +256,7 @@ def _nodes(
 def _counted(head: int, words: list[str], found: int, what: str) -> None:
     """Raise ReadError where a block has more or fewer lines than its head says."""
     if len(words) > 4 and words[4].isdigit() and int(words[4]) not in (0, found):
-        raise ReadError(
-            f"line {head + 1}: {words[0]} says {words[4]} {what} and holds {found}; is the archive complete?"
-        )
+        raise ReadError(f"line {head + 1}: {words[0]} says {words[4]} {what} and has {found}; is the archive complete?")
 
 
 def _elements(

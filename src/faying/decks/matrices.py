@@ -47,7 +47,7 @@ def read_matrices(
     file = Path(path)
     if stiffness_unit is None or mass_unit is None:
         raise InputError(
-            f'{file.name} does not say its units; say them, for example stiffness_unit = "N/mm", mass_unit = "t"'
+            f'{file.name} does not state its units; give them, for example stiffness_unit = "N/mm", mass_unit = "t"'
         )
     scales = units.scale(stiffness_unit, "N/m", name="stiffness_unit"), units.scale(mass_unit, "kg", name="mass_unit")
     if file.suffix.lower() == ".mtx":
@@ -117,7 +117,7 @@ def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
     place = {(int(node), int(axis)): i for i, (node, axis) in enumerate(dofs)}
     lost = [(int(node), int(axis)) for node, axis in wanted if (int(node), int(axis)) not in place]
     if lost or len(dofs) != len(wanted):
-        what = f"node {lost[0][0]} direction {lost[0][1]} of the mesh is missing" if lost else "the matrices hold more"
+        what = f"node {lost[0][0]} direction {lost[0][1]} of the mesh is missing" if lost else "the matrices have more"
         raise InputError(
             f"the matrices have {len(dofs)} unknowns and the mesh {len(wanted)}: {what}; export both from one model, "
             "without supports"
@@ -227,7 +227,7 @@ def _market(path: Path) -> Any:
         rest = rest.partition("\n")[2]
     size, _, body = rest.partition("\n")
     if not size.replace(" ", "").isdigit() or len(size.split()) != (3 if form == "coordinate" else 2):
-        raise ReadError(f"{path}: {size.strip()[:60]!r} is no size of a matrix; is the file complete?")
+        raise ReadError(f"{path}: {size.strip()[:60]!r} is not the size of a matrix; is the file complete?")
     rows, columns, *entries = map(int, size.split())
     if form == "array":
         if symmetry != "general":
@@ -253,7 +253,7 @@ def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
                 "one model"
             )
         if not np.all(np.isfinite(A.data)):
-            raise InputError(f"{name}: the {what} matrix holds numbers that are not finite")
+            raise InputError(f"{name}: the {what} matrix has numbers that are not finite")
         differ = abs(A - A.T)
         if A.nnz and differ.max() > SYMMETRIC * abs(A).max():
             i = int(np.argmax(differ.max(axis=1).toarray().ravel()))

@@ -71,10 +71,10 @@ def read_mesh(
         return _meshed(file, size, face_size, cache, wrong)
     wrong = [name for name, value in (("size", size), ("face_size", face_size)) if value is not None]
     if wrong:
-        raise InputError(f"{file.name} is a mesh already, and {wrong[0]} goes with a STEP file; leave it out")
+        raise InputError(f"{file.name} is a mesh already, and {wrong[0]} is for STEP files; leave it out")
     module = reader_of(file, MESHES, STEP)
     if unit is None:
-        raise InputError(f'{file.name} does not say in which unit its coordinates are; say it, for example unit = "mm"')
+        raise InputError(f'{file.name} does not state the unit of its coordinates; give it, for example unit = "mm"')
     scale = units.scale(unit, "m", name="unit of the mesh")
     raw = _read(module, file)
     return _Builder(raw, file.name, unit, scale).mesh(parts)
@@ -91,7 +91,7 @@ def _meshed(
     from faying.geometry.geometry import mesh_step
 
     if wrong:
-        raise InputError(f"{file.name} is a STEP file, which says its unit and its parts; leave {wrong[0]} out")
+        raise InputError(f"{file.name} is a STEP file, which states its unit and its parts; leave {wrong[0]} out")
     if size is None:
         raise InputError(
             f'{file.name} is a STEP file and is meshed here; give the largest edge, such as size = "10 mm"'
@@ -113,11 +113,13 @@ def _read(module: Any, file: Path) -> RawMesh:
     except (ValueError, IndexError, KeyError, OverflowError) as fault:
         if isinstance(fault, InputError):
             raise
-        raise ReadError(f"{file} holds something that is not understood ({fault}); is the file complete?") from None
+        raise ReadError(
+            f"{file} has something that Faying does not understand ({fault}); is the file complete?"
+        ) from None
     if not len(raw.numbers):
-        raise ReadError(f"{file} holds no nodes; is the file complete?")
+        raise ReadError(f"{file} has no nodes; is the file complete?")
     if not any(len(numbers) for numbers, _ in raw.elements.values()):
-        raise ReadError(f"{file} holds no solid elements; is the file complete?")
+        raise ReadError(f"{file} has no solid elements; is the file complete?")
     return raw
 
 
@@ -193,7 +195,7 @@ class _Builder:
         lost = ranked[place] != numbers
         if np.any(lost):
             raise ReadError(
-                f"{self.name}: {what} names node {np.asarray(numbers)[lost][0]}, which the file does not hold; "
+                f"{self.name}: {what} names node {np.asarray(numbers)[lost][0]}, which is not in the file; "
                 "is the file complete?"
             )
         return order[place]
@@ -350,7 +352,7 @@ class _Builder:
             if on.any():
                 self._by_key(label, key[on], skins, found)
             if not on.all():
-                text = f"{np.count_nonzero(~on)} shells {label!r} lie on no solid and are left out, with their "
+                text = f"{np.count_nonzero(~on)} shells {label!r} are not on a solid and are left out, with their "
                 self.notes.append(Note(code="left-out", text=text + "stiffness and mass"))
         self._of_sides(numbers, cells, skins, found)
         faces: dict[str, Blocks] = {}
@@ -388,14 +390,14 @@ class _Builder:
         every, count = np.unique(
             np.concatenate([side_key(f, n) for outer in skins.values() for f in outer]), return_counts=True
         )
-        between = every[count > 1]  # sides that two parts share are no free ones
+        between = every[count > 1]  # sides that two parts share are not free ones
         for label, pairs in self.raw.side_sets.items():
             place = np.minimum(np.searchsorted(numbers[order], pairs[:, 0]), len(numbers) - 1)
             at = order[place]
             if np.any(numbers[at] != pairs[:, 0]):
                 raise ReadError(
-                    f"{self.name}: the surface {label!r} names element {pairs[numbers[at] != pairs[:, 0], 0][0]}, "
-                    "which is no solid of the file"
+                    f"{self.name}: the surface {label!r} has element {pairs[numbers[at] != pairs[:, 0], 0][0]}, "
+                    "which is not a solid of the file"
                 )
             key, whole = self._side_keys(label, at, pairs[:, 1], cells)
             if len(key):
@@ -440,7 +442,8 @@ class _Builder:
                 hit |= np.isin(key, np.concatenate([side_key(faces, n) for faces in here]))
         if not hit.any():
             text = (
-                f"the surface {label!r} lies inside its part, on {len(key)} element faces that are no outer side of a "
+                f"the surface {label!r} lies inside its part, on {len(key)} element faces that are not on "
+                "the outside of a "
                 "solid, and is left out; where it is a joint, put the elements on each side into an element set of "
                 "their own, which is then a part with its own face"
             )
@@ -448,7 +451,8 @@ class _Builder:
         elif not hit.all():
             found.pop(label)
             text = (
-                f"{np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are no outer side of a solid, "
+                f"{np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are not on the "
+                "outside of a solid, "
                 "and it is left out; where elements of one part share the nodes there, put those on each side into an "
                 "element set of their own, which is then a part with its own face"
             )
@@ -504,7 +508,7 @@ class _Builder:
             a, b = numbers[nodes[pairs[0]]]
             raise InputError(
                 f"{self.name}: {len(pairs)} pairs of nodes of part {part!r} coincide ({a} and {b}, for one), so that "
-                "its elements do not hang together there; merge the nodes, or make two parts and a joint"
+                "its elements are not connected there; merge the nodes, or make two parts and a joint"
             )
 
 

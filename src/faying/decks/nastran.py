@@ -54,7 +54,7 @@ def read(path: Path) -> RawMesh:
     for name, some in case.items():
         single = index(first for first, last in some if first == last)
         if len(np.setdiff1d(single, grids)):
-            notes.append(f"{name} of the case control names what is no grid, and is left out")
+            notes.append(f"{name} of the case control has something that is not a grid; it is left out")
         else:
             bulk.sets.setdefault(name, some)
     if not bulk.ended:
@@ -115,7 +115,7 @@ def _absent(bulk: Bulk) -> list[str]:
     """A note on elements that PLOAD4 cards name and the file does not hold."""
     named = {int(fields[1]) for fields, _ in bulk.loads if fields[6].upper() != "THRU" and fields[1].isdigit()}
     absent = sorted(named - bulk.solid.keys() - bulk.others)
-    return [f"PLOAD4 names elements that the file does not hold: {few(absent)}"] if absent else []
+    return [f"PLOAD4 names elements that are not in the file: {few(absent)}"] if absent else []
 
 
 def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, list[int]]]) -> dict[str, Index]:
@@ -131,7 +131,7 @@ def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, l
             )
         if not all(word.isdigit() for word in (*fields[:2], *filter(None, fields[6:8]))):
             given = ", ".join((*fields[:2], *fields[6:8]))
-            raise ReadError(f"{where}: PLOAD4 names {given}, which are not load set, element and nodes")
+            raise ReadError(f"{where}: PLOAD4 names {given}, which are not numbers of a load set, an element and nodes")
         element = int(fields[1])
         if element not in where_of:
             continue  # a load on a shell
@@ -186,7 +186,7 @@ def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
             raise ReadError(f"{where}: DMIG {name} cannot be read ({fault}); is the file complete?") from None
     for name in names:
         if name.upper() not in entries:
-            raise ReadError(f"{path} holds no DMIG {name}; it holds {', '.join(sorted(entries)) or 'none'}")
+            raise ReadError(f"{path} has no DMIG {name}; it has {', '.join(sorted(entries)) or 'none'}")
     found = [entries[name.upper()] for name in names]
     keys = sorted({key for some in found for row, column, _ in some for key in (row, column)})
     place = {key: i for i, key in enumerate(keys)}

@@ -74,7 +74,7 @@ class RawMesh:
                 wrong = some[(some < 1) | (some > GREATEST)]
                 if len(wrong):
                     raise ReadError(
-                        f"{what} {wrong[0]}: numbers of {what}s lie between 1 and {GREATEST:,}; is the file complete?"
+                        f"{what} {wrong[0]}: numbers of {what}s are between 1 and {GREATEST:,}; is the file complete?"
                     )
         if self.points.shape != (len(self.numbers), 3) or not np.all(np.isfinite(self.points)):
             bad = self.numbers[~np.isfinite(self.points).all(axis=-1)] if self.points.ndim == 2 else self.numbers
@@ -150,7 +150,7 @@ def from_edges(kind: str, edges: tuple[tuple[int, int], ...]) -> list[int]:
 def read_text(path: Path, what: str) -> str:
     """Text of a file; ReadError where it cannot be read."""
     if path.exists() and not path.is_file():
-        raise ReadError(f"cannot read the {what} {path}: it is no regular file")
+        raise ReadError(f"cannot read the {what} {path}: it is not a regular file")
     try:
         return path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as fault:
@@ -171,7 +171,7 @@ def numbers_of(path: Path, text: str, count: int | None = None) -> Array:
         try:
             values = np.fromstring(text.replace("D", "E").replace("d", "e"), sep=" ")
         except (DeprecationWarning, ValueError):
-            raise ReadError(f"{path} holds words that are not numbers; is it complete?") from None
+            raise ReadError(f"{path} has words that are not numbers; is it complete?") from None
     if count is not None and len(values) != count:
         raise ReadError(f"{path} has {len(values):,} numbers where its head says {count:,}; is it complete?")
     return values

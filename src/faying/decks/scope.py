@@ -56,7 +56,7 @@ class Scope:
     node_sets: dict[str, Items] = field(default_factory=dict)
     node_surfaces: dict[str, Items] = field(default_factory=dict)
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
-    others: list[Index] = field(default_factory=list)  # numbers of elements that are no solids
+    others: list[Index] = field(default_factory=list)  # numbers of elements that are not solids
     made: list[str] = field(default_factory=list)  # element sets that *ELEMENT itself names
     bolts: list["PretensionSection"] = field(default_factory=list)
     loads: list[tuple[str, float]] = field(default_factory=list)  # node or set, and its force in direction 1
@@ -122,7 +122,7 @@ def take(block: Block, scope: Scope) -> None:
         raise
     except (ValueError, IndexError, OverflowError) as fault:
         raise ReadError(
-            f"{block.where}: *{keyword} holds something that is not a number ({fault}); is the file complete?"
+            f"{block.where}: *{keyword} has something that is not a number ({fault}); is the file complete?"
         ) from None
 
 
@@ -178,7 +178,7 @@ def _frame(block: Block) -> tuple[Array, Array]:
         x = x - (x @ z) * z
     size = np.linalg.norm(x), np.linalg.norm(z)
     if min(size) < 1e-9 * max(1.0, float(np.abs(points).max())) ** 2:
-        raise ReadError(f"{block.where}: the points of *SYSTEM coincide or lie on one line")
+        raise ReadError(f"{block.where}: the points of *SYSTEM coincide or are on one line")
     x, z = x / size[0], z / size[1]
     return np.stack([x, np.cross(z, x), z]), origin
 
@@ -244,7 +244,7 @@ def _of_equal_length(block: Block, width: int) -> list[str]:
 
 
 def _other(block: Block, scope: Scope, numbers: Index) -> None:
-    """Note elements that are no solids: their numbers, and the set that they are put into, which others may name."""
+    """Note elements that are not solids: their numbers, and the set that they are put into, which others may name."""
     scope.others.append(numbers)
     if "ELSET" in block.options:
         _add(scope.element_sets, block.options["ELSET"], "", index([]))

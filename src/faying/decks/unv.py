@@ -35,7 +35,7 @@ def _datasets(path: Path) -> list[tuple[str, list[str]]]:
     lines = [line.rstrip("\r") for line in read_text(path, "universal file").split("\n")]
     marks = [k for k, line in enumerate(lines) if line.strip() == "-1"]
     if not marks:
-        raise ReadError(f"{path} is no universal file (no line -1)")
+        raise ReadError(f"{path} is not a universal file (no line -1)")
     if len(marks) % 2:
         raise ReadError(f"{path}: the last data set has no end (-1); the file is cut short")
     check_data_sets(lines, path.name)
@@ -82,7 +82,7 @@ def read(path: Path) -> RawMesh:
     for name, (elements, _) in groups.items():
         absent = sorted({*elements} - held)
         if absent:
-            notes.append(f"the group {name!r} names elements that the file does not hold: {few(absent)}")
+            notes.append(f"the group {name!r} names elements that are not in the file: {few(absent)}")
         on = [shells[e] for e in elements if e in shells]
         if on:
             faces[name] = on
@@ -167,14 +167,14 @@ def _groups(path: Path, lines: list[str]) -> dict[str, tuple[list[int], list[int
             continue
         count, name = _whole_numbers(path, lines[k], 8, "a group")[-1], lines[k + 1].strip()
         if re.fullmatch(r"(\d+\s+){3,}\d+", name):
-            raise ReadError(f"{path}: {name[:60]!r} stands where a group has its name; is the count of one wrong?")
+            raise ReadError(f"{path}: {name[:60]!r} is where a group has its name; is the count of one wrong?")
         words: list[int] = []
         k += 2
         while len(words) < 4 * count and k < len(lines):
             words += index(lines[k].split()).tolist()
             k += 1
         if len(words) != 4 * count:
-            raise ReadError(f"{path}: group {name!r} names {count} things and holds {len(words) // 4}")
+            raise ReadError(f"{path}: group {name!r} names {count} things and has {len(words) // 4}")
         pairs = list(zip(words[::4], words[1::4], strict=True))
         out[name] = ([tag for kind, tag in pairs if kind == 8], [tag for kind, tag in pairs if kind == 7])
     return out

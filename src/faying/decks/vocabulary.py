@@ -95,7 +95,7 @@ _LEFT_OUT = {CONTACT: listed(ABAQUS_CONTACT), BOLT: listed(ABAQUS_BOLT), CONSTRA
 _PASSED_OVER = listed(ABAQUS_GEOMETRY) | listed(ABAQUS_STUDY)
 _CARDS = {CONTACT: listed(NASTRAN_CONTACT), BOLT: listed(NASTRAN_BOLT), CONSTRAINT: listed(NASTRAN_CONSTRAINT)}
 WORDS = {
-    CONTACT: "contact and ties are left out; what holds the parts together is what the joints of the study say",
+    CONTACT: "contact and ties are left out; the joints of the study hold the parts together",
     BOLT: "the preload of bolts is left out; give it in [[bolt]] of the study",
     CONSTRAINT: "couplings and constraints are left out; the parts move without them",
 }

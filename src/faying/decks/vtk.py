@@ -73,7 +73,7 @@ def read(path: Path) -> RawMesh:
         else:
             raise ReadError(f"{path}: cells of type {block.type} are not known; known are {', '.join(_KINDS)}")
     if not elements:
-        raise ReadError(f"{path} holds no solid cells")
+        raise ReadError(f"{path} has no solid cells")
     return RawMesh(
         numbers=np.arange(1, len(points) + 1),
         points=points,

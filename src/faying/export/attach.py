@@ -181,7 +181,7 @@ def _joint(study: Study, faces: tuple[str, str], name: str | None) -> JointChoic
     if name is None and len(study.joints) == 1:
         return study.joints[0]
     names = ", ".join(repr(spec.name) for spec in study.joints)
-    raise InputError(f"the study has the joints {names}; say whose law to take with --joint NAME")
+    raise InputError(f"the study has the joints {names}; choose whose law to take with --joint NAME")
 
 
 def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_size: bool, unit: str) -> Interface:
@@ -236,7 +236,7 @@ def _materials(study: Study, mesh: Mesh, faces: tuple[str, str]) -> dict[str, Ma
             out[part] = study.materials[next(iter(used))]
         else:
             raise InputError(
-                f"[part] of the study says nothing of {part!r}, which the model holds, and uses several materials; "
+                f"[part] of the study has no entry for {part!r}, which is in the model, and uses several materials; "
                 f"add [part.{part}]"
             )
     return out

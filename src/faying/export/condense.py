@@ -64,7 +64,7 @@ class Condensed:
         return float(self.frequencies[count - 1]) if count else 0.0
 
     def deck(self, *, unit: str, force_unit: str = "N", nodes: tuple[int, int], element: int) -> CondensedDeck:
-        """The joint in the units of a model, ready to be written. Raises InputError for numbers that are no numbers."""
+        """The joint in the units of a model, ready to be written. Raises InputError for wrong numbers."""
         if min(nodes) < 1 or nodes[0] == nodes[1] or element < 1:
             raise InputError(f"nodes {nodes[0]} and {nodes[1]}, element {element}: give two nodes, numbers from 1 on")
         system = UnitSystem(unit, force_unit)

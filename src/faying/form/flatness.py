@@ -56,7 +56,7 @@ def minimum_zone(places: Array, heights: Array) -> MinimumZone:
     places = numbers(places, "places", "points", 2)
     heights = numbers(heights, "heights", len(places))
     if not (np.all(np.isfinite(places)) and np.all(np.isfinite(heights))):
-        raise InputError("places and heights hold numbers that are not finite; leave these points out")
+        raise InputError("places and heights have numbers that are not finite; leave these points out")
     if len(heights) < 4:
         raise InputError(f"flatness of {len(heights)} points: four or more are needed")
     centre, size = places.mean(axis=0), float(np.ptp(places, axis=0).max())

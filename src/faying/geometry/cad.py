@@ -35,7 +35,7 @@ def kernel() -> Any:
 
 
 def check_head(path: Path) -> None:
-    """Raise ReadError where there is no such file, or it is no STEP file."""
+    """Raise ReadError where there is no such file, or it is not a STEP file."""
     if not path.is_file():
         raise ReadError(f"no file {path}; geometry.step names a STEP file relative to the study")
     with path.open("rb") as file:
@@ -62,7 +62,7 @@ def _geometry(path: Path) -> Any:
         raise ReadError(f"{path} cannot be read as STEP ({fault}); export it again from the CAD program") from None
     found, written = len(list(shape.solids)), len(_SOLID.findall(path.read_text(encoding="latin-1")))
     if not found:
-        raise ReadError(f"{path} holds no solid; export solids, not surfaces")
+        raise ReadError(f"{path} has no solids; export solids, not surfaces")
     if found < written:
         raise ReadError(
             f"{path} holds {written} solids, of which the CAD kernel reads {found}: they are not in one assembly; "

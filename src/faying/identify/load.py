@@ -41,7 +41,7 @@ def load(path: str | Path) -> Saved:
         if name == kind.KIND:
             return kind.of_file(path, tree)
     known = ", ".join(kind.KIND for kind in KINDS)
-    raise ReadError(f"{path} holds none of what faying.load reads, which is {known}; a sweep is read by xarray")
+    raise ReadError(f"{path} has nothing that faying.load reads, which is {known}; a sweep is read by xarray")
 
 
 def _earlier(tree: Group) -> str:

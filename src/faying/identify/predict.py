@@ -165,7 +165,7 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
             out.append(Note(code="test-modes", text=text))
     if study.uncertain is not None and not study.uncertain.models:
         text = (
-            f"the intervals hold what [uncertain] lists, and {found.discrepancy:.2%} of each frequency for what it "
+            f"the intervals include what [uncertain] lists, and {found.discrepancy:.2%} of each frequency for what it "
             "does not (discrepancy, and E of the parts where that does not scatter); not the error of the mesh"
         )
         out.append(Note(code="interval", text=text))

@@ -177,7 +177,7 @@ class Prediction(Recorded):
             The axes.
 
         Raises:
-            InputError: It is no axes, or no sample has an answer.
+            InputError: It is not axes, or no sample has an answer.
         """
         from faying.identify.prediction_figure import interval_axes
 

@@ -66,7 +66,7 @@ def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: 
             out.append(Note(code="not-told", text=text))
         ends = prior.quantile(np.array([END, 1 - END]))
         for share, side in ((np.mean(values < ends[0]), "lower"), (np.mean(values > ends[1]), "upper")):
-            if share > PRESSED and not (of_noise and side == "lower"):  # little noise is no fault
+            if share > PRESSED and not (of_noise and side == "lower"):  # little noise is not a fault
                 text = (
                     f"{name} presses against the {side} end of its prior: {share:.0%} of the posterior is in the "
                     f"outer {END:.0%} of it. The prior is too narrow, or the model lacks something."

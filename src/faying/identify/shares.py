@@ -13,7 +13,7 @@ from faying.typing import Array
 
 LEVEL = 0.9  # share of the repeats within the intervals
 REPEATS = 200  # of the bootstrap
-MOST_SHARE = 2.0  # a share of variance beyond it is no error of sampling
+MOST_SHARE = 2.0  # a share of variance beyond it is not an error of sampling
 STILL = 1e-12  # relative range of an output that does not vary
 
 
@@ -46,7 +46,7 @@ def shares(
         seed: of the points.
 
     Raises:
-        InputError: count is no power of 2, or an output is not finite.
+        InputError: count is not a power of 2, or an output is not finite.
 
     Source: Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018, table 2 (b) and (f), at the points of
         scipy.stats.sobol_indices.

@@ -149,7 +149,7 @@ class ClampedStack:
         sections: (length [m], Young's modulus [Pa]) of the parts, from the head on.
         joints: indices of the joints that the bolt clamps, from the head on.
         outer: diameter [m] of a ring of the area of the joint that belongs to this bolt, the mean of its joints.
-        seat: inner and outer diameter [m] of the seat; None where head and nut press a face that is no ring.
+        seat: inner and outer diameter [m] of the seat; None where head and nut press a face that is not a ring.
     """
 
     sections: tuple[tuple[float, float], ...]
@@ -159,7 +159,7 @@ class ClampedStack:
 
     @property
     def cone(self) -> float:
-        """Compliance of the members [m/N] by the deformation cone of VDI 2230; NaN where the seat is no ring."""
+        """Compliance of the members [m/N] by the deformation cone of VDI 2230; NaN where the seat is not a ring."""
         if self.seat is None or self.outer <= self.seat[0]:
             return float("nan")
         return cone_compliance(self.sections, seat=self.seat[1], hole=self.seat[0], outer=self.outer)

@@ -40,7 +40,7 @@ class Joint:
         scan_area: With per_node, area of the scan [m2], or text with a unit, to which a node's force is applied.
         friction: Coefficient of Coulomb slip under the preload [-], 0 to 10; None where the joint sticks everywhere.
         search_distance: Between faces that count as meeting [m], or text with a unit; chosen where None.
-        form: Distance of the faces before any load that is no roughness; None for faces as they are meshed.
+        form: Distance of the faces before any load, roughness apart; None for faces as they are meshed.
 
     Raises:
         InputError: An argument cannot be used; the text says which, and what is allowed.
@@ -128,10 +128,10 @@ class Joint:
 
 
 def check_friction(what: str, friction: float | None) -> None:
-    """Raise InputError for what is no coefficient of friction."""
+    """Raise InputError for what is not a coefficient of friction."""
     if friction is not None and not 0 <= friction < 10:
         raise InputError(
-            f"{what}: friction {friction:g} is no coefficient of friction; give one such as "
+            f"{what}: friction {friction:g} is not a coefficient of friction; give one such as "
             "0.2, or leave it out for a joint that sticks"
         )
 
@@ -176,7 +176,7 @@ class FittedJoint:
         notes: What was found when it was laid on its mesh.
 
     Raises:
-        InputError: The friction is no coefficient of friction.
+        InputError: The friction is not a coefficient of friction.
 
     Source:
         Springs at nodes: the JK paper, doi:10.3390/fractalfract8100611.

@@ -114,7 +114,7 @@ def fade(p: Array, k: Array) -> float:
 
 
 def equal_steps(grid: Array) -> tuple[Index, float]:
-    """For `cells`: the cell of a rising grid at equal steps from its beginning, and the step; 0 where that is no gain.
+    """For `cells`: the cell of a rising grid at equal steps from its beginning, and the step (0 without gain).
 
     No step is longer than the shortest cell, so that the next grid point settles which of two cells a value lies in.
     """

@@ -454,7 +454,9 @@ def materials_of_parts(mesh: Mesh, given: str | Material | Mapping[str, str | So
         lacking = [part for part in mesh.parts if part not in given]
         absent = [part for part in given if part not in mesh.parts]
         if lacking or absent:
-            wrong = f"say nothing of part {lacking[0]!r}" if lacking else f"name part {absent[0]!r}, which is not there"
+            wrong = (
+                f"say nothing about part {lacking[0]!r}" if lacking else f"name part {absent[0]!r}, which is not there"
+            )
             raise InputError(f"the materials {wrong}; the parts of the mesh are {', '.join(map(repr, mesh.parts))}")
         found = {part: solid_of(value, f"part {part!r}") for part, value in given.items()}
         if all(found[part] is value for part, value in given.items()):

@@ -98,7 +98,7 @@ def check_motions(structure: Structure, modes: Modes) -> None:
 
 
 def _bent(structure: Structure, shapes: Array) -> Array:
-    """Share (m,) of the kinetic energy of shapes that is no rigid motion of the whole."""
+    """Share (m,) of the kinetic energy of shapes that is not a rigid motion of the whole."""
     whole, mass = rigid_motions(structure.mesh.points), structure.matrices[1]
     rest = shapes - whole @ np.linalg.solve(whole.T @ (mass @ whole), whole.T @ (mass @ shapes))
     energy = [np.einsum("im,im->m", x, mass @ x) for x in (rest, shapes)]

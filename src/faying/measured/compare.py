@@ -234,7 +234,7 @@ def compare_modes(
         ModalComparison.
 
     Raises:
-        InputError: where no point lies on the model, or a direction is no translation.
+        InputError: where no point lies on the model, or a direction is not a translation.
 
     Source:
         Allemang 2003, Sound and Vibration 37(8) (MAC); Heylen and Lammens 1996 (FRAC).

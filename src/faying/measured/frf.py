@@ -35,7 +35,7 @@ class Dof(NamedTuple):
         sign, name = (-1.0, self.direction[1:]) if self.direction.startswith("-") else (1.0, self.direction)
         if name not in AXES:
             raise InputError(
-                f"point {self.point} has the direction {self.direction!r}, which is no translation; give x, y or z, "
+                f"point {self.point} has the direction {self.direction!r}, which is not a translation; give x, y or z, "
                 'for example .directed("z"), or on the command line --direction z'
             )
         return sign * np.array(AXES[name])
@@ -48,7 +48,7 @@ def dofs(pairs: object) -> tuple[Dof, ...]:
         raise InputError(f'{shortened(pairs)}; give pairs of a point and a direction, for example [(1, "z")]')
     for pair in pairs:
         if not isinstance(pair, tuple | list) or len(pair) != 2 or not isinstance(pair[1], str):
-            raise InputError(f'{shortened(pair)} is no pair of a point and a direction; give for example (1, "z")')
+            raise InputError(f'{shortened(pair)} is not a pair of a point and a direction; give for example (1, "z")')
         point, direction = pair
         if direction not in DIRECTIONS:
             raise InputError(f"direction {direction!r} of point {point}: use one of {', '.join(map(repr, DIRECTIONS))}")
@@ -129,7 +129,7 @@ class FRF(Summary):
         measured = np.isfinite(values)
         if np.any(measured.any(axis=2) != measured.all(axis=2)) or not measured.any():
             raise InputError(
-                "an FRF holds NaN at some of its frequencies only; leave such spectral lines out, or the FRF"
+                "an FRF has NaN at some of its frequencies only; leave such spectral lines out, or the FRF"
             )
         if np.abs(values[measured]).max() > LARGEST:
             raise InputError(

@@ -191,5 +191,5 @@ def _factor(cell: Cell, quantity: str, where: str, notes: list[str]) -> float:
             if others
             else f"write for example {DIMENSIONS[quantity]}/N"
         )
-        raise ReadError(f'{where}: "{cell.unit}" of the column "{cell.text}" is no unit of {quantity}; {hint}')
+        raise ReadError(f'{where}: "{cell.unit}" of the column "{cell.text}" is not a unit of {quantity}; {hint}')
     return factor

@@ -25,7 +25,7 @@ class Transform:
         r = np.asarray(self.rotation, float)
         if r.shape != (3, 3) or not np.allclose(r @ r.T, np.eye(3), atol=1e-6) or np.linalg.det(r) < 0:
             raise InputError(
-                f"rotation {r.tolist()} is no rotation: rows of length 1, at right angles, right-handed; scale and "
+                f"rotation {r.tolist()} is not a rotation: rows of length 1, at right angles, right-handed; scale and "
                 "mirror nothing"
             )
 
@@ -199,7 +199,7 @@ POINTS = "give a CSV table point,x [mm],y [mm],z [mm]"
 def read_points(path: str | Path) -> dict[int, Position]:
     """Read a table of points with a heading that states the units: point,x [mm],y [mm],z [mm]. Positions in [m].
 
-    Raises ReadError where the file is no such table or a point appears twice.
+    Raises ReadError where the file is not such a table or a point appears twice.
     """
     file = Path(path)
     table = read_columns(
@@ -210,7 +210,9 @@ def read_points(path: str | Path) -> dict[int, Position]:
     out: dict[int, Position] = {}
     for k, (label, *place) in enumerate(zip(*(table.values[name] for name in ("point", *"xyz")), strict=True)):
         if label != int(label) or abs(label) > 2**53:
-            raise ReadError(f"{file}, line {table.lines[k]}: {label:g} is no number of a point, a whole one; {POINTS}")
+            raise ReadError(
+                f"{file}, line {table.lines[k]}: {label:g} is not a point number; give a whole number; {POINTS}"
+            )
         if int(label) in out:
             raise ReadError(f"{file}: point {int(label)} appears twice; give each point once")
         x, y, z = (float(v) for v in place)

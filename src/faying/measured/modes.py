@@ -66,7 +66,7 @@ class ModeSet(Summary):
                 f"{len(self.dofs)} degrees of freedom do not fit; shapes need ({count}, {len(self.dofs)})"
             )
         if not all(np.all(np.isfinite(a)) for a in (self.frequencies, self.loss_factors, self.shapes)):
-            raise InputError("the modes hold NaN; leave such modes or degrees of freedom out")
+            raise InputError("the modes have NaN; leave such modes or degrees of freedom out")
         if not np.all(np.asarray(self.frequencies) > 0):
             raise InputError(
                 f"frequencies of {np.min(self.frequencies):g} Hz and more; leave out modes at 0 Hz or below"

@@ -70,7 +70,8 @@ def poles_by_order(frf: FRF, highest_order: int) -> list[Complex]:
     first = frf.frequency[0] / step
     if abs(first - round(first)) > 0.01:
         raise InputError(
-            f"the first spectral line, {frf.frequency[0]:g} Hz, is no multiple of the spacing {step:g} Hz; interpolate "
+            f"the first spectral line, {frf.frequency[0]:g} Hz, is not a multiple of the spacing {step:g} "
+            "Hz; interpolate "
             "the FRFs to lines at multiples of the spacing"
         )
     lines = round(first)

@@ -78,7 +78,7 @@ def _check(force: Array, response: Array, outputs: int, sampling_rate: float) ->
             f"outputs, samples) with {outputs} outputs and 8 samples or more"
         )
     if not (np.all(np.isfinite(force)) and np.all(np.isfinite(response))):
-        raise InputError("the records hold NaN or infinite values; leave such hits out")
+        raise InputError("the records have NaN or infinite values; leave such hits out")
     if not np.all(np.any(force != 0, axis=1)):
         empty = int(np.argmin(np.any(force != 0, axis=1))) + 1
         raise InputError(f"the force of record {empty} is zero throughout; leave that hit out")

@@ -65,7 +65,7 @@ class MeasuredBackbone(Summary):
         and damping [%] where it is known. Lines from # on are comments.
 
         Raises:
-            ReadError: with the file and the line, where it is no such table.
+            ReadError: with the file and the line, where it is not such a table.
         """
         path = Path(path)
         table = read_columns(path, KNOWN, needed="frequency", form=FORM)
@@ -124,7 +124,7 @@ def read_record(path: str | Path) -> tuple[Array, float, Motion]:
         The samples (n,) in SI units, the sampling rate [1/s], and what was measured.
 
     Raises:
-        ReadError: with the file and the line, where it is no such record or its samples are not evenly spaced.
+        ReadError: with the file and the line, where it is not such a record or its samples are not evenly spaced.
     """
     path = Path(path)
     table = read_columns(path, {"time": "s", **MOTION_UNITS}, needed="time", form=RECORD_FORM)
@@ -133,7 +133,7 @@ def read_record(path: str | Path) -> tuple[Array, float, Motion]:
         raise ReadError(f"{path}, line {table.head}: give one of the columns {', '.join(MOTIONS)}; {RECORD_FORM}")
     time = table.values["time"]
     if len(time) < 2:
-        raise ReadError(f"{path}: {len(time)} samples are no record; {RECORD_FORM}")
+        raise ReadError(f"{path}: {len(time)} samples are too few for a record; {RECORD_FORM}")
     step = (time[-1] - time[0]) / (len(time) - 1)
     apart = np.abs(np.diff(time) - step)
     if not step > 0 or apart.max() > UNEVEN * step:
@@ -184,7 +184,7 @@ def ring_down(
     if quantity not in MOTIONS:
         raise InputError(f"quantity {quantity!r}: use one of {', '.join(MOTIONS)}")
     if x.ndim != 1 or not np.all(np.isfinite(x)):
-        raise InputError(f"the record has the shape {x.shape} or holds NaN; give one row of finite samples")
+        raise InputError(f"the record has the shape {x.shape} or has NaN; give one row of finite samples")
     if not 0 < sampling_rate < np.inf:
         raise InputError(f"sampling_rate = {sampling_rate}: samples per second must be positive")
     _check_band(band, sampling_rate / 2)

@@ -79,7 +79,7 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
             )
         for line in lines:
             if set(line) & set("()") and not BOTH_PARTS.fullmatch(line):
-                raise ReadError(f"{path}: {line[:60]!r} is no complex number of two parts, as (-0.07+2.6e-08j)")
+                raise ReadError(f"{path}: {line[:60]!r} is not a complex number of two parts, as (-0.07+2.6e-08j)")
         values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
         return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128), ()
     for line in lines:
@@ -140,7 +140,7 @@ def _refuse_units(above: list[tuple[int, str]], path: Path) -> None:
     for number, line in above:
         if states_unit(line, ("Hz", *(f"{unit}/N" for unit in DIMENSIONS.values()), *DIMENSIONS.values())):
             raise ReadError(
-                f'{path}, line {number}: "{line[:80]}" speaks of units in words that Faying does not read; take the '
+                f'{path}, line {number}: "{line[:80]}" mentions units in words that Faying does not read; take the '
                 f"line out and write a heading: {FORM}"
             )
 
@@ -150,5 +150,5 @@ def _number(kind: Any, path: Path, text: str) -> Any:
         return kind(text)
     except ValueError:
         raise ReadError(
-            f"{path}: {text!r} is no number; expected a complex number on each line, or frequency, real, imaginary"
+            f"{path}: {text!r} is not a number; expected a complex number on each line, or frequency, real, imaginary"
         ) from None

@@ -131,7 +131,7 @@ def _check_headers(lines: Sequence[str], file: Path) -> None:
             if len(points) > COLUMNS:
                 raise ReadError(
                     f"{file}, line {k + OF_POINTS + 1}: {points.strip()!r} is longer than the {COLUMNS} columns in "
-                    "which the points of a function stand; its header is damaged"
+                    "which the points of a function are written; its header is damaged"
                 )
 
 
@@ -174,7 +174,7 @@ def _sets(file: Path) -> list[dict[str, Any]]:
         raise ReadError(f"{file}: cannot be read ({fault})") from None
     if not kinds:
         raise ReadError(
-            f"{file}: no universal file: it holds no data set between lines of -1. Export the test as UFF or UNV"
+            f"{file} is not a universal file: it has no data set between lines of -1. Export the test as UFF or UNV"
         )
     content = file.read_bytes()
     if not content.rstrip(b"\x00\x1a \t\r\n").endswith(b"    -1"):
@@ -227,7 +227,7 @@ def _function(data: dict[str, Any], where: str) -> Function:
             "export it again"
         )
     if not (np.all(np.isfinite(values)) and np.all(np.isfinite(x))):
-        raise ReadError(f"{where}: it holds NaN or infinite values; measure or export that function again")
+        raise ReadError(f"{where}: it has NaN or infinite values; measure or export that function again")
     if data["func_type"] in OVER_TIME and data["abscissa_spec_data_type"] == FREQUENCY:
         raise ReadError(
             f"{where}: a {KINDS[data['func_type']]} over frequency; its header is damaged, export that function again"
@@ -248,7 +248,9 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
     """Frequency [Hz], loss factor, points (p,) and motion (p, 3) of one mode."""
     kind = data["analysis_type"]
     if kind not in (2, 3, 7):
-        raise ReadError(f"{where}: data at nodes of analysis type {kind}, which is no mode; modes are types 2, 3 and 7")
+        raise ReadError(
+            f"{where}: data at nodes of analysis type {kind}, which is not a mode; modes are types 2, 3 and 7"
+        )
     points = _whole(data["node_nums"], where)
     parts = [np.asarray(data[r]) for r in ("r1", "r2", "r3")]
     if any(len(p) != len(points) for p in parts):
@@ -358,7 +360,7 @@ def _whole(values: Any, where: str) -> Index:
     except (TypeError, ValueError):
         found = np.array([np.nan])
     if not np.all(np.isfinite(found)) or np.any(found != np.rint(found)) or np.any(np.abs(found) > 2**53):
-        raise ReadError(f"{where}: some numbers of points are no whole numbers; the file is damaged, export it again")
+        raise ReadError(f"{where}: some numbers of points are not whole numbers; the file is damaged, export it again")
     return found.astype(np.int64)
 
 

@@ -117,7 +117,7 @@ def _resolved(file: Path, label: int, own: Mapping[int, tuple[int, int, Array]],
         points = np.array([base.place(p) for p in points])
     elif reference not in (0, label):
         raise ReadError(
-            f"{file}: coordinate system {label} refers to system {reference}, which the file does not hold; export it"
+            f"{file}: coordinate system {label} refers to system {reference}, which is not in the file; export it"
         )
     origin, on_x, in_xz = points
     x, z = on_x - origin, in_xz - origin
@@ -168,7 +168,7 @@ def shapes_2414(file: Path) -> tuple[list[NodalShape], list[str]]:
         if location != 1 or head[1] not in MODES or head[3] != DISPLACEMENT:
             notes.append(
                 f'{file}: the data set 2414 "{title}" holds results of analysis type {head[1]}, result type '
-                f"{head[3]}, at location {location}, which are no mode shapes; it is left out"
+                f"{head[3]}, at location {location}, which are not mode shapes; it is left out"
             )
             continue
         try:

@@ -69,12 +69,12 @@ def states_nothing(label: str) -> bool:
 
 
 def hertz(data: dict[str, Any], where: str) -> float:
-    """Hz in one unit of the abscissa of an FRF, from its type code and label. ReadError where they are no frequency."""
+    """Hz in one unit of the abscissa of an FRF, from its type code and label. ReadError for other quantities."""
     label = data["abscissa_axis_units_lab"]
     kind = data["abscissa_spec_data_type"]
     if kind not in (0, 1, FREQUENCY):
         raise ReadError(
-            f'{where}: an FRF over an abscissa of type {kind} ("{label.strip()}"), which is no frequency (type 18); '
+            f'{where}: an FRF over an abscissa of type {kind} ("{label.strip()}"), which is not a frequency (type 18); '
             "export it over frequency"
         )
     text = label.strip().lower().replace(" ", "")
@@ -87,7 +87,7 @@ def hertz(data: dict[str, Any], where: str) -> float:
     if text in ("khz", "mhz"):
         return 1e3 if text == "khz" else _megahertz(label, where)
     raise ReadError(
-        f'{where}: the unit "{label.strip()}" of its abscissa is no unit of frequency that Faying reads (Hz, kHz, '
+        f'{where}: the unit "{label.strip()}" of its abscissa is not a unit of frequency that Faying reads (Hz, kHz, '
         "rad/s, rpm); export it over Hz"
     )
 
@@ -110,8 +110,8 @@ def frf_scale(
     named = quantity or MOTION.get(data["ordinate_spec_data_type"])
     if data["orddenom_spec_data_type"] not in (0, 1, FORCE) and quantity is None:
         raise ReadError(
-            f"{where}: a function relative to something that is no force (type {data['orddenom_spec_data_type']}); "
-            'leave it out, or say what it is, for example quantity="accelerance"'
+            f"{where}: a function relative to something that is not a force (type {data['orddenom_spec_data_type']}); "
+            'leave it out, or give what it is, for example quantity="accelerance"'
         )
     for name in [named] if named else list(DIMENSIONS):
         whole = unit_factor(top, DIMENSIONS[name] + "/N")
@@ -131,7 +131,7 @@ def frf_scale(
             )
     if named is None:
         raise ReadError(
-            f'{where}: neither its type code nor its unit "{top}" says what was measured; say it, for example '
+            f'{where}: neither its type code nor its unit "{top}" states what was measured; give it, for example '
             'quantity="accelerance", or on the command line --quantity accelerance'
         )
     if not states_nothing(top):
@@ -145,6 +145,6 @@ def frf_scale(
 
 def _unknown(label: str, wanted: str, where: str) -> str:
     return (
-        f'{where}: the unit "{label.strip()}" of its ordinate is no unit of {wanted}; export it in such a unit, or '
+        f'{where}: the unit "{label.strip()}" of its ordinate is not a unit of {wanted}; export it in such a unit, or '
         "correct the label in the file (NONE where the values are SI)"
     )

@@ -225,12 +225,12 @@ class Epmc:
         if last.level >= high * (1 - NEAR):
             return "amplitude", "the amplitude that was asked for is reached"
         if last.other_modes > OTHER_MODES:
-            text = f"other modes make {last.other_modes:.0%} of the motion, which is no longer this mode's"
+            text = f"other modes make {last.other_modes:.0%} of the motion, so the curve has left this mode"
             return "other-modes", text
         if last.open >= 1:
             return "open", "the joint opens fully in every cycle"
         if last.slipping > self.most_sliding:
-            return "all-slipping", f"{last.slipping:.0%} of the joint slides in every cycle; it holds no more"
+            return "all-slipping", f"{last.slipping:.0%} of the joint slides in every cycle; its friction is used up"
         return None
 
     def _to_end(self, points: Sequence[EpmcPoint], high: float) -> float:

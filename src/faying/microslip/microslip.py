@@ -42,7 +42,7 @@ class Microslip:
     def __post_init__(self) -> None:
         if not (np.isfinite(self.friction) and self.friction >= 0):
             raise InputError(
-                f"friction: {self.friction} is no friction coefficient; give a finite number of 0 or more, e.g. 0.2 "
+                f"friction: {self.friction} is not a friction coefficient; give a finite number of 0 or more, e.g. 0.2 "
                 "(a joint that never slips needs no microslip law)"
             )
 

@@ -23,9 +23,9 @@ TOLERANCE = 5e-9  # estimated relative error of the squared frequencies
 DEBIAN = "python3-slepc4py-real python3-petsc4py-real mpi-default-bin"
 WORKER = Path(__file__).with_name("mpi_worker.py")
 SYSTEM = "/usr/bin/python3"
-UNSTABLE = 1e-4  # of the shift: eigenvalues further below zero are no rounding
+UNSTABLE = 1e-4  # of the shift: eigenvalues further below zero are not rounding
 LAST_WORDS = 12  # lines of the processes that an error repeats
-LEAST = 3000  # unknowns of each process: fewer are no work for many
+LEAST = 3000  # unknowns of each process: with fewer, more processes do not pay
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +59,7 @@ def modes_over_mpi(
 
     Raises:
         InputError: mpiexec, petsc4py or slepc4py are missing; more modes or processes than the unknowns allow; the
-            shift is no frequency or above all modes; the structure is unstable.
+            shift is not a frequency or above all modes; the structure is unstable.
         NotConverged: the iteration stops short, or a process ended before its time.
     """
     n = stiffness.shape[0]

@@ -221,7 +221,7 @@ def processes_named(solver: str) -> int:
     """How many processes a solver `mpi:PROCESSES` means; `mpi` alone: FAYING_MPI_PROCESSES, or as many as cores.
 
     Raises:
-        InputError: that is no number.
+        InputError: that is not a number.
     """
     asked = solver.removeprefix(MPI).removeprefix(":") or os.environ.get("FAYING_MPI_PROCESSES", "").strip()
     if not asked:

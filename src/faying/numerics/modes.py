@@ -99,7 +99,7 @@ def lowest_modes(
 
 
 def check_shift(stiffness: Any, mass: Any, shift_frequency: float) -> None:
-    """Raise InputError for a shift that is no frequency, or above all modes that the mesh has."""
+    """Raise InputError for a shift that is not a frequency, or above all modes that the mesh has."""
     if not (np.isfinite(shift_frequency) and shift_frequency > 0):
         raise InputError(f"a shift of {shift_frequency:g} Hz: give one above 0, near the first elastic mode")
     heavy = mass.diagonal() > 0

@@ -215,7 +215,7 @@ def factorise(matrix: Any, name: str | None = None) -> Repeatable:
     way = chosen(name)
     if is_mpi(way):
         raise InputError(
-            f"this asks for a factorisation, which the solver {way!r} has none of; name another, such as "
+            f"this asks for a factorisation, which the solver {way!r} does not have; give another, such as "
             f"{available()[0]!r}, or none"
         )
     return _BACKENDS[way](matrix)

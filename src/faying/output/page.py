@@ -121,7 +121,7 @@ def without_zeros(rows: Rows, keys: int = 1) -> tuple[Rows, list[str]]:
 
     def zero(column: int) -> bool:
         cells = [row[column].rstrip("%") for row in rows[1:]]
-        try:  # a hash of zeros is no number
+        try:  # a hash of zeros is not a number
             return bool(cells) and all(len(cell) < 12 and float(cell) == 0 for cell in cells)
         except ValueError:
             return False

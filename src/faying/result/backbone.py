@@ -220,7 +220,7 @@ class Backbone(Recorded):
         wanted = np.asarray(acceleration, dtype=float)
         if np.any(wanted > self.acceleration[-1] * (1 + 1e-9)) or np.any(wanted <= 0):
             raise InputError(
-                f"the curve goes from 0 to {self.acceleration[-1]:.4g} m/s2 ({self.reason}); it says nothing of "
+                f"the curve goes from 0 to {self.acceleration[-1]:.4g} m/s2 ({self.reason}); it has no value at "
                 f"{wanted.max():.4g} m/s2"
             )
         return self._between(self.acceleration, wanted)

@@ -133,7 +133,7 @@ class Recorded(Summary):
             InputError: The file cannot be written.
         """
         if not Path(path).name:
-            raise InputError(f'path = {shortened(path)} is no file; give its name, such as "{self.KIND}.nc"')
+            raise InputError(f'path = {shortened(path)} is not a file; give its name, such as "{self.KIND}.nc"')
         return netcdf.write(Path(path), self.tree())
 
     @classmethod
@@ -157,7 +157,7 @@ class Recorded(Summary):
         command = f"; write one with: {cls.COMMAND}" if cls.COMMAND else ""
         found = tree.attributes.get(RECORD, cls.KIND)
         if found != cls.KIND:
-            raise ReadError(f"{path} holds a {found} and no {cls.KIND}; read it with faying.load")
+            raise ReadError(f"{path} has a {found}, not a {cls.KIND}; read it with faying.load")
         try:
             made = cls.of_tree(tree)
             made.refuse_strays()

@@ -653,7 +653,9 @@ class Result(Recorded):
             ("face_of_triangle", self.face_of_triangle, np.inf),
         ):
             if indices is not None and indices.size and not (indices.min() >= -1 and indices.max() < count):
-                raise ReadError(f"its {name} run from {indices.min()} to {indices.max()}, past what the file holds")
+                raise ReadError(
+                    f"its {name} run from {indices.min()} to {indices.max()}, past the end of those in the file"
+                )
 
     @checked_call
     def modes_at(self, load: float | str | None = None, source: str = "this study") -> ModelModes:

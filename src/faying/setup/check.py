@@ -221,7 +221,7 @@ def _named(study: Study, facts: GeometryFacts, found: _Findings) -> dict[str, tu
             named[label] = chosen(label, study.geometry.face[label], facts, snap=study.geometry.snap)
 
         if not found.tried("selector", key, select) and selector.part in facts.by_part:
-            named[label] = facts.by_part[selector.part][:1]  # so that its name is no second fault
+            named[label] = facts.by_part[selector.part][:1]  # so that its name is not a second fault
     return named
 
 

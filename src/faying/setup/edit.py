@@ -27,7 +27,7 @@ def edited(text: str, path: KeyPath, value: Any) -> str:
         The text. It reads as the old one with that one change, which is checked.
 
     Raises:
-        InputError: the text is no TOML, has no such place, or writes the place in a way that cannot be changed alone.
+        InputError: the text is not TOML, has no such place, or writes the place in a way that cannot be changed alone.
     """
     data = parsed(text)
     wanted = _changed(data, path, value)

@@ -8,7 +8,7 @@ import numpy as np
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.typing import Array
 
-SLENDER = 1.5  # shank diameters from its axis, beyond which a part with a shank is no bolt (a spigot of a flange, say)
+SLENDER = 1.5  # shank diameters from its axis, beyond which a part with a shank is not a bolt (but a spigot, say)
 NUT = 1.25, 2.5  # shank diameters: the farthest that a nut reaches from the axis, and how long it is at most
 TIGHT = 1e-2  # of the radius: gap between shank and hole below which they fit without play
 
@@ -63,7 +63,7 @@ class Fasteners:
         out = []
         if self.dowels:
             out.append(
-                f"{listed(pin.part for pin in self.dowels)}: dowels, which carry shear alone. Left out of the mesh "
+                f"{listed(pin.part for pin in self.dowels)}: dowels, which carry only shear. Left out of the mesh "
                 "(geometry.leave_out); a [[dowel]] stands for each"
             )
         if self.others:

@@ -295,6 +295,7 @@ def shoulder_remark(contacts: Sequence[TouchingFaces]) -> str:
     pairs = dict.fromkeys((contact.first[0], contact.second[0]) for contact in contacts)
     between = "; ".join(listed(pair) for pair in pairs)
     return (
-        f"{len(contacts)} pairs of faces that touch along the bolts of {between} (shoulders, registers) are no joints, "
+        f"{len(contacts)} pairs of faces that touch along the bolts of {between} (shoulders, registers) "
+        "are not joints, "
         "since no bolt presses them: left out; add a [[joint]] if they do carry load"
     )

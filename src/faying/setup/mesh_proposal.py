@@ -40,7 +40,7 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
         mesh = read_mesh(path, unit=unit, parts=sets)
     facts = mesh_facts(mesh)
     if len(facts.parts) < 2:
-        raise InputError(f"{facts.file} holds one part, {facts.parts[0].name!r}; a joint needs two that touch")
+        raise InputError(f"{facts.file} has one part, {facts.parts[0].name!r}; a joint needs two that touch")
     contacts = [
         contact
         for contact in touching(facts)

@@ -52,7 +52,7 @@ def find(step: Path, unit: str | None = None) -> Proposal:
     """
     if step.suffix.lower() in STEP:
         if unit is not None:
-            raise InputError("--unit goes with a mesh file; a STEP file says its unit")
+            raise InputError("--unit is for mesh files; a STEP file states its unit, so leave --unit out")
         return propose(read_facts(step), step)
     return propose_mesh(step, unit)
 

@@ -126,7 +126,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         InputError: a single part, or no parts that touch.
     """
     if len(facts.parts) < 2:
-        raise InputError(f"{facts.file} holds one part, {facts.parts[0].name!r}; a joint needs two that touch")
+        raise InputError(f"{facts.file} has one part, {facts.parts[0].name!r}; a joint needs two that touch")
     fasteners = find_fasteners(facts, touching(facts))
     facts = facts.without(fasteners.left_out)
     alone = _alone(facts, path)
@@ -149,7 +149,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         remarks.append(f"{listed(alone)}: no flat face touches another part; left out of the mesh (geometry.leave_out)")
     if apart:
         gap = show(max(contact.gap for contact in apart), "m")
-        text = f"{len(apart)} pairs of faces up to {gap} apart, which no bolt closes, are no joints: left out; add a "
+        text = f"{len(apart)} pairs of faces up to {gap} apart, which no bolt closes, are not joints: left out; add a "
         remarks.append(text + "[[joint]] if they do meet")
     remarks += [shoulder_remark(aside)] if aside else []
     remarks += left.remarks

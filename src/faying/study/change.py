@@ -52,14 +52,14 @@ def _set(table: dict[str, Any], keys: Declared, parts: Sequence[str], value: Any
     if what is None:
         near = get_close_matches(name, keys, n=1)
         hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(keys)}"
-        raise InputError(f'"{path}" leads to nothing that a study has: {name!r}; {hint}')
+        raise InputError(f'"{path}" is not a key of a study: {name!r}; {hint}')
     if not rest:
         if value is None:
             table.pop(name, None)
         else:
             table[name] = _written(what, value)
     elif isinstance(what, Key):
-        raise InputError(f'"{path}": {name} holds no other keys; leave out {".".join(rest)}')
+        raise InputError(f'"{path}": {name} has no other keys; leave out {".".join(rest)}')
     elif what.many:
         _set_in_list(table, what, parts, value, path)
     else:
@@ -83,7 +83,7 @@ def _set_in_list(table: dict[str, Any], what: Inner, parts: Sequence[str], value
             hint = f"; did you mean {near[0]}?" if near else ""
             raise InputError(f'"{path}": no {name} is called {parts[1]!r}; there are {", ".join(names)}{hint}')
         if not rest:
-            raise InputError(f'"{path}" names a {name} and none of its keys; there are {", ".join(what.keys)}')
+            raise InputError(f'"{path}" is a {name}, not a key; add one of its keys: {", ".join(what.keys)}')
     for one in chosen:
         _set(one, what.keys, rest, value, path)
 

@@ -23,7 +23,7 @@ class PartFolder:
         what: The name of such work in messages, and of the label.
 
     Raises:
-        InputError: The output is no .nc in a folder that exists, another process is at it, or other work has left it.
+        InputError: The output is not an .nc file in an existing folder, is in use, or has other work in it.
     """
 
     def __init__(self, out: Path, fingerprint: str, *, what: str) -> None:

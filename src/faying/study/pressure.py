@@ -52,10 +52,12 @@ def _table(file: Path) -> tuple[Index, Array]:
     table = read_columns(file, known, needed=("node", "pressure"), form=form, examples={"Pa": "MPa"})
     numbers, values = table.values["node"], table.values["pressure"]
     if not table.lines:
-        raise ReadError(f"{file} holds no pressures; {form}")
+        raise ReadError(f"{file} has no pressures; {form}")
     odd = np.flatnonzero((numbers != np.rint(numbers)) | (np.abs(numbers) > 2**53))
     if len(odd):
-        raise ReadError(f"{file}, line {table.lines[odd[0]]}: {numbers[odd[0]]:g} is no node number; give an integer")
+        raise ReadError(
+            f"{file}, line {table.lines[odd[0]]}: {numbers[odd[0]]:g} is not a node number; give an integer"
+        )
     if min(values) < -1e-9 * max(map(abs, values)):
         raise InputError(
             f"{file}: {sum(v < 0 for v in values)} pressures are negative; pressure presses the faces together and "

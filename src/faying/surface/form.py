@@ -138,7 +138,7 @@ def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
     candidates = (away > threshold * scale) & ~hole
     if not candidates.any():
         return np.zeros(hole.shape, bool)
-    # a rough patch is no spike: compare with the mean difference around, single large ones cut down to the threshold
+    # a rough patch is not a spike: compare with the mean difference around, single large ones cut down to the threshold
     around = uniform_filter(np.minimum(away, threshold * scale), size=15, mode="nearest")
     return np.asarray(candidates & (away > threshold * around), bool)
 

@@ -304,7 +304,7 @@ def consistency(D: float, G: float, *, Rq: float, length: float, c: float = 1.0)
         return []
     return [
         f"D and G imply Rq {_m(implied)} over {_m(length)}, the surface's own is {_m(Rq)}: they do not belong "
-        "together, or the law does not hold up to that length"
+        "together, or the law is not valid up to that length"
     ]
 
 

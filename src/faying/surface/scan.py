@@ -54,7 +54,7 @@ def _frozen(heights: Any, dimensions: int, name: str) -> Array:
         want = "rows and columns, heights[iy, ix]" if dimensions == 2 else "one row of points"
         raise InputError(f"{name}: heights have {out.ndim} dimensions; give {want}")
     if min(out.shape) < 2:
-        raise InputError(f"{name}: heights of shape {out.shape} hold too few points; at least 2 are needed each way")
+        raise InputError(f"{name}: heights of shape {out.shape} have too few points; at least 2 are needed each way")
     if np.isinf(out).any():
         raise InputError(f"{name}: some heights are infinite; mark missing points as NaN")
     out = np.array(out, copy=True)

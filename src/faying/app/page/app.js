@@ -294,7 +294,7 @@ $("make-joint").addEventListener("click", () => {
 });
 $("make-bolt").addEventListener("click", () => {
   insert(`[[bolt]]\nname = "bolt ${count("bolt")}"\nfaces = [${state.picks.map(selector).join(", ")}]\n` +
-    'preload = "10 kN"             # fill in: this is no proposal\n');
+    'preload = "10 kN"             # fill in: this is not a proposal\n');
   clearPicks();
 });
 $("clear-picks").addEventListener("click", clearPicks);

@@ -13,7 +13,7 @@ from faying.text import json_text
 @click.argument("record", type=click.Path(path_type=Path))
 @click.option("--band", required=True, metavar="LOW:HIGH", help='Where the mode is alone, for example "150 Hz:180 Hz".')
 @click.option("--start", metavar="TIME", help='Of the free decay in a record, for example "0.02 s" [its beginning].')
-@click.option("--impulse", metavar="TEXT", help='Of the hit, where RECORD holds its FRF, for example "0.3 N s".')
+@click.option("--impulse", metavar="TEXT", help='Impulse of the hit, if RECORD is an FRF, for example "0.3 N s".')
 @click.option(
     "--function", type=click.IntRange(1, 10_000), help="Which FRF of a universal file, from 1 [the only one]."
 )
@@ -66,14 +66,14 @@ def decay(record: Path, options: dict[str, Any]) -> Any:
         found = ring_down(signal, rate, band=band, quantity=motion, cycles=cycles, start=start)
         return replace(found, source=record.name)
     if options["impulse"] is None:
-        raise InputError(f'{record}: an FRF says nothing of the strength of the hit; give --impulse "0.3 N s"')
+        raise InputError(f'{record}: an FRF does not give the strength of the hit; give --impulse "0.3 N s"')
     if options["start"] is not None:
-        raise InputError("--start is for a record in time; an FRF begins with the hit")
+        raise InputError("--start is for a record in time; an FRF begins with the hit, so leave --start out")
     frf = read_uff(record).frf()
     both = [(o, i) for o in range(frf.values.shape[0]) for i in range(frf.values.shape[1])]
     if (options["function"] is None and len(both) > 1) or (options["function"] or 1) > len(both):
         named = ", ".join(f"{k}: {frf.outputs[o]} by {frf.inputs[i]}" for k, (o, i) in enumerate(both, start=1))
-        raise InputError(f"{record} holds {len(both)} FRFs; give one of them with --function ({named})")
+        raise InputError(f"{record} has {len(both)} FRFs; give one of them with --function ({named})")
     output, by = both[(options["function"] or 1) - 1]
     impulse = units.parse(options["impulse"], "N*s", name="--impulse")
     found = ring_down_of_frf(frf, impulse=impulse, band=band, output=output, input=by, cycles=cycles)

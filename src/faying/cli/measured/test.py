@@ -16,7 +16,7 @@ TEXT = (".txt", ".csv", ".dat", ".asc")
 @click.option(
     "--quantity",
     type=click.Choice(["receptance", "mobility", "accelerance"]),
-    help="What was measured, where the file does not say it (text files never do).",
+    help="What was measured; needed where the file does not state it (text files never do).",
 )
 @click.option(
     "--frequency-step",
@@ -101,7 +101,7 @@ def read_frf(
     if all(file.suffix.lower() in TEXT for file in files):
         if quantity is None:
             raise InputError(
-                "text files do not say what was measured; give --quantity receptance, mobility or accelerance"
+                "text files do not state what was measured; give --quantity receptance, mobility or accelerance"
             )
         step = units.parse(frequency_step, "Hz", name="--frequency-step") if frequency_step else None
         frf = read_frf_text(files, quantity=quantity, frequency_step=step, direction=direction or "")

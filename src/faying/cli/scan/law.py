@@ -131,7 +131,7 @@ def command(
         law_table.show(mates, several, pressures, output)
         return
     if contact_map:
-        raise InputError("--contact-map goes with --scan and halfspace among --models")
+        raise InputError("--contact-map needs --scan, and halfspace among --models")
     given = given_of(kind, options, settings, mates)
     with law_table.watched(mates) as seen:
         choice = pick(kind, given, None, pair) if seen is None else seen.choose(kind, given)
@@ -225,7 +225,7 @@ def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> Any:
     choice = SurfaceChoice(**{name: options[name] for name in names}, counter=counter, **sizes, **numbers)
     faces = choice.read().faces
     if faces is None or faces.unfitted.scan is None:
-        raise InputError(f"{options['scan']} holds a profile; contact laws need an areal scan")
+        raise InputError(f"{options['scan']} is a profile; contact laws need an areal scan")
     return faces
 
 

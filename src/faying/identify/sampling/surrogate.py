@@ -26,7 +26,7 @@ class Surrogate:
     An input is the standardised value of its distribution, (x - centre)/spread, of ln x for a lognormal one. A bounded
     input, of a uniform distribution, has Legendre polynomials on -1 to 1, any other Hermite polynomials: both are
     orthonormal under their prior. To map every input to a normal score instead would bend what is straight: a model
-    that is linear in a uniform input would be no polynomial of its score.
+    that is linear in a uniform input would not be a polynomial of its score.
 
     Args:
         bounded: which inputs have Legendre polynomials (d,).

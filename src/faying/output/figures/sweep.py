@@ -29,9 +29,7 @@ def check(path: str | Path, axes: int) -> None:
     """Raise InputError, before anything is computed, for a figure that cannot be drawn or written."""
     check_figure(path)
     if axes > 2:
-        raise InputError(
-            f"a figure shows one or two axes and the sweep has {axes}; leave out --plot, or hold some axes fixed"
-        )
+        raise InputError(f"a figure shows one or two axes and the sweep has {axes}; leave out --plot, or fix some axes")
 
 
 def _scale(axis: Axis) -> tuple[Any, str, bool]:

@@ -25,7 +25,7 @@ def of_file(path: str | Path, unit: str | None = None) -> Scene:
         raise ReadError(f"no file {file}")
     meshed = kind not in (".toml", ".nc", ".step", ".stp")
     if unit is not None and not meshed:
-        raise InputError(f"--unit goes with a mesh file; {file.name} has its units inside")
+        raise InputError(f"--unit is for mesh files; {file.name} states its units, so leave --unit out")
     if kind == ".toml":
         from faying.case.case import checked_mesh
         from faying.study import Study
@@ -39,7 +39,7 @@ def of_file(path: str | Path, unit: str | None = None) -> Scene:
     if not meshed:
         return of_step(file)
     if unit is None:
-        raise InputError(f'a mesh file does not say its unit; give that of {file.name}, for example --unit "mm"')
+        raise InputError(f'a mesh file does not state its unit; give that of {file.name}, for example --unit "mm"')
     from faying.decks.meshfile import read_mesh
 
     return of_mesh(read_mesh(file, unit=unit), title=file.name)

@@ -69,7 +69,7 @@ def view(of: Result | Mesh | str | Path, *, unit: str | None = None, height: int
     if isinstance(of, str | Path):
         return View(of_file(of, unit), height=height)
     if unit is not None:
-        raise InputError("unit goes with a mesh file; leave it out")
+        raise InputError("unit is for mesh files; leave it out")
     if isinstance(of, Result):
         return View(of_result(of), height=height)
     return View(of_mesh(of), height=height)

@@ -25,7 +25,7 @@ Read = Callable[[Any, str], Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Key:
-    """One key that is no table.
+    """One key that is not a table.
 
     Args:
         says: what it means, one sentence.
@@ -229,7 +229,7 @@ def of_parameter(parameter: Parameter, default: Any = None) -> Key:
 
 
 def key_of(declared: Declared, name: str) -> Key:
-    """The declaration of a key that is no table."""
+    """The declaration of a key that is not a table."""
     found = declared[name]
     if not isinstance(found, Key):
         raise TypeError(f"{name} is a table")
@@ -240,5 +240,5 @@ def inner_of(declared: Declared, name: str) -> Inner:
     """The declaration of a table."""
     found = declared[name]
     if not isinstance(found, Inner):
-        raise TypeError(f"{name} is no table")
+        raise TypeError(f"{name} is not a table")
     return found

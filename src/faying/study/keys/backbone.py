@@ -97,7 +97,7 @@ class BackboneChoice:
 def check_friction(value: float) -> None:
     """Raise InputError unless a value is a coefficient with which a joint holds and can slip."""
     if not 0 < value < 10:
-        raise InputError(f"friction = {value:g} is no coefficient of a joint that slips; give one such as 0.2")
+        raise InputError(f"friction = {value:g} is not a coefficient of a joint that slips; give one such as 0.2")
 
 
 def accelerations(value: Any, name: str) -> tuple[float, float]:

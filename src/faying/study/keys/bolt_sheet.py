@@ -10,7 +10,7 @@ from faying.study.declaration.declared import QUANTITY, WORDS, Declared, Key, li
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity as read_quantity
 
-MOST_FACTOR = 10.0  # greatest tightening factor that is no slip of the pen
+MOST_FACTOR = 10.0  # greatest tightening factor that is not a slip of the pen
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +56,7 @@ class BoltSheetChoice:
         name = table.get("bolt")
         if name is not None and name not in bolts:
             known = ", ".join(f'"{one}"' for one in bolts)
-            table.faults.add(f'{table.where}.bolt = "{name}" is no bolt; there are {known}')
+            table.faults.add(f'{table.where}.bolt = "{name}" is not a bolt; there are {known}')
         way = table.get("tightening")
         if way is not None:
             table.made(lambda: tightening(way, f"{table.where}.tightening"))
@@ -64,7 +64,7 @@ class BoltSheetChoice:
         lacking = [one for one in loads if one not in cases]
         if lacking:
             known = ", ".join(f'"{one}"' for one in cases) or "none"
-            table.faults.add(f'{table.where}.load = "{lacking[0]}" is no [[load]]; there are {known}')
+            table.faults.add(f'{table.where}.load = "{lacking[0]}" is not a [[load]]; there are {known}')
         for key in ("axial", "transverse", "introduction", "thermal_loss"):
             if loads and key in table.data:
                 table.faults.add(f"{table.where} has both load and {key}, which the load gives; leave one out")

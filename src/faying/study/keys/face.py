@@ -40,12 +40,12 @@ def read_selector(table: Table) -> Selector | None:
     table.close()
     if not rules and part is not None:
         table.faults.add(
-            f'{table.where} names a part and nothing of its face; add normal = "+z", touching = "another part", '
+            f'{table.where} gives a part but no face of it; add normal = "+z", touching = "another part", '
             f'nearest = ["0 mm", "0 mm", "5 mm"] or number = 1 (`faying faces` lists them)'
         )
         return None
     if given["within"] is not None and given["nearest"] is None:
-        table.faults.add(f"{table.where}.within goes with nearest; leave it out")
+        table.faults.add(f"{table.where}.within needs nearest; give nearest too, or leave within out")
     if part is None or any(given[key] is None for key in rules):
         return None
     return Selector(part=part, **given | {"within": given["within"] or WITHIN})

@@ -97,11 +97,11 @@ def _meshed(table: Table) -> GeometryChoice:
     if mesh is not None:
         table.faults.files += included(mesh)
     if "unit" not in table.data:
-        table.faults.add('geometry.unit is missing: a mesh file does not say its unit; write for example unit = "mm"')
+        table.faults.add('geometry.unit is missing: a mesh file does not state its unit; write for example unit = "mm"')
     unit = table.get("unit")
     for key in ("step", "size", "face_size", "leave_out"):
         if key in table.data:
-            table.faults.add(f"geometry.{key} goes with a STEP file; geometry.mesh names a mesh that is ready")
+            table.faults.add(f"geometry.{key} is for a STEP file, and geometry.mesh is a finished mesh; leave it out")
             table.data.pop(key)
     inner = table.table("sets")
     sets = {name: inner.get(name) for name in list(inner.data)} if inner else {}
@@ -166,7 +166,7 @@ GEOMETRY: Declared = {
             )
         },
     ),
-    "snap": quantity("m", "Faces of a joint that are nowhere farther apart than this count as touching.", 0.0),
+    "snap": quantity("m", "Faces of a joint whose largest distance is this or less count as touching.", 0.0),
     "leave_out": own(
         'a list of parts, for example ["dowel 1", "dowel 2"]',
         listed(WORDS, 0),

@@ -34,7 +34,7 @@ class JointChoice:
     """Two faces that meet, before there is a mesh to place them on.
 
     search_distance [m] between faces that count as meeting; surface and law: of this joint alone, those of the study
-    where None; form: the distance of the faces before any load that is no roughness; bonded: whether the faces are
+    where None; form: the distance of the faces before any load, roughness apart; bonded: whether the faces are
     welded or glued, which takes nothing else; number: its place among the [[joint]] of the study, from 1.
     """
 
@@ -129,6 +129,6 @@ JOINT: Declared = {
             "sticks everywhere where left out."
         ),
     ),
-    "search_distance": quantity("m", "How far apart faces may lie and still be a joint."),
+    "search_distance": quantity("m", "Largest distance of two faces that still make a joint."),
     "form": Inner(says="Form of the two faces together, as a gap. What is given adds up.", keys=FORM),
 }

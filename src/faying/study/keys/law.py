@@ -119,7 +119,7 @@ def _note_misplaced(table: Table, kind: LawKind) -> bool:
         owners = [law.name for law in laws().values() if key in law.entries()]
         if owners:
             names = " or ".join(f'"{name.lower()}"' for name in owners)
-            table.faults.add(f'{table.where}.{key} goes with model = {names}, not "{kind.label.lower()}"')
+            table.faults.add(f'{table.where}.{key} is for model = {names}, not "{kind.label.lower()}"')
             table.data.pop(key)
             found = True
     return found

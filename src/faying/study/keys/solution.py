@@ -68,7 +68,7 @@ class ResponseChoice:
             return None
         first, last = table.get("from"), table.get("to")
         if first is not None and last is not None and not first < last:
-            table.faults.add(f"response: from = {first:g} Hz must lie below to = {last:g} Hz")
+            table.faults.add(f"response: from = {first:g} Hz must be below to = {last:g} Hz")
         sides: list[tuple[tuple[Point, Point], ...]] = []
         for key in ("input", "output"):
             pairs = []

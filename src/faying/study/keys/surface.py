@@ -50,7 +50,7 @@ class SurfaceChoice:
                 table.faults.add(f"{table.where}: give scan, or D, G and scan_area ({', '.join(missing)} missing)")
         if choice.D is not None and not 2 < choice.D < 3:
             table.faults.add(
-                f"{table.where}.D = {choice.D}: the dimension of a surface lies between 2 and 3, for example 2.4"
+                f"{table.where}.D = {choice.D}: the dimension of a surface is between 2 and 3, for example 2.4"
             )
         table.close()
         return choice

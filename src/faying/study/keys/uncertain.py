@@ -35,7 +35,7 @@ OF_MATERIAL = {
 }
 OF_TEST = ("test", "discrepancy", "test_loss", "discrepancy_loss")
 DISTRIBUTIONS = {"distribution", "tightening", "scatter"}  # keys of a table that is one value
-OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", MODEL)  # that are no plain distribution
+OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", MODEL)  # that are not plain distributions
 # standard deviations of the shapes of a joint over the flatness tolerance of its faces: the second-degree part of the
 # random form of `faying.form.form`, whose mean flatness over one face is two thirds of the tolerance
 DRAWS = 1_000_000  # of waves, of which each sample has one
@@ -160,7 +160,7 @@ def lifted(data: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
 
 
 def _declared(key: str) -> Parameter | None:
-    """What a key of a number declares; None where there is no such key, or it is no number."""
+    """What a key of a number declares; None where there is no such key, or it is not a number."""
     parts = key.split(".")
     if parts[0] == "material":
         return OF_MATERIAL.get(parts[-1]) if len(parts) == 3 else None
@@ -253,14 +253,14 @@ class _Reader:
         parameter = _declared(key)
         if parameter is None:
             raise InputError(
-                f"{where} is nothing that can scatter; known are {', '.join((*SHORT, *OF_MATERIAL, *OWN))}, "
+                f"{where} cannot scatter; what can: {', '.join((*SHORT, *OF_MATERIAL, *OWN))}, "
                 "material.NAME.E, material.NAME.density, part.NAME.stiffness, part.NAME.mass, bolt.preload, "
                 "bolt.NAME.preload, bolt.NAME.factor, joint.NAME.friction, joint.NAME.stiffness, "
                 "joint.NAME.tangential, joint.NAME.form.SHAPE, surface.D, surface.G, law.NAME"
             )
         self._check(key, where)
         if not isinstance(value, str | Mapping) or not value:
-            raise InputError(f'{where} = {value!r} is no distribution; write for example "0.1 to 0.6" or "2 +- 0.1"')
+            raise InputError(f'{where} = {value!r} is not a distribution; write for example "0.1 to 0.6" or "2 +- 0.1"')
         self._add(key, Distribution.read(value, parameter.unit, where), parameter, where, within)
 
     def _add(self, key: str, found: Distribution, parameter: Parameter, where: str, within: bool = False) -> None:

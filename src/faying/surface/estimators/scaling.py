@@ -70,7 +70,7 @@ def through_parts(ready: Prepared, c: float, local: Local, low: float, high: flo
         pivot,
         c,
         band=(low, high),
-        notes=("the interval is the spread between parts of the scan and holds no bias; --self-test measures that",),
+        notes=("the interval is the spread between parts of the scan without a bias; --self-test measures the bias",),
     )
 
 

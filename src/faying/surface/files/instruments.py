@@ -17,7 +17,7 @@ from faying.units import scale
 ROUNDED = 0.1  # of a step: how far the positions of a line may be off an even grid
 _BROKEN = (
     "SurfaceTopography, which reads formats of instruments, is installed but does not start ({fault}); install a "
-    "version that goes with the numpy that is here"
+    "version for the installed numpy"
 )
 Steps = Callable[[int, int], tuple[float, float]]
 
@@ -156,7 +156,7 @@ def _scan(file: Path, content: _Content, xy: float, z: float) -> Scan | Profile:
     heights, sizes, positions = content.heights, content.sizes, content.positions
     instrument = _instrument(content.info)
     if heights.size == 0 or not all(np.isfinite(s) and s > 0 for s in sizes):
-        raise ReadError(f"{file}: the file holds no points or no size; it is damaged")
+        raise ReadError(f"{file}: the file has no points or no size; it is damaged")
     if heights.ndim == 2:
         nx, ny = heights.shape
         spacing = (sizes[0] * xy / nx, sizes[1] * xy / ny)

@@ -30,7 +30,7 @@ def _value(word: str) -> float | None:
 
 
 def _row(line: str, columns: int = 2) -> list[float] | None:
-    """Numbers of a line, or None where it is a heading; empty ends beyond so many columns are no missing numbers."""
+    """Numbers of a line, or None where it is a heading; empty ends beyond so many columns are not missing numbers."""
     words = line.split(";") if ";" in line else line.split(",") if "," in line else line.split()
     while len(words) > columns and not words[-1].strip():
         words.pop()
@@ -131,7 +131,7 @@ Heading = tuple[tuple[float, float, float] | None, tuple[int, ...]]
 
 
 def _heading(line: str, path: Path) -> Heading | None:
-    """Metres per unit of x, y, z, None where none is stated, and their places in a row; None where it is no heading.
+    """Metres per unit of x, y, z, None where none is stated, and their places in a row; None where it is not a heading.
 
     Raises ReadError where columns beyond x, y, z stand in it, or only some state a unit.
     """
@@ -186,7 +186,7 @@ def _table(path: Path, how: TextLayout) -> Array:
 
 
 def _quickly(path: Path, how: TextLayout) -> Array | None:
-    """All rows in one go; None where something is to be said of one, or some words are no numbers."""
+    """All rows in one go; None where something is to be said of one, or some words are not numbers."""
     skip, heading, first = 0, how.heading, ""
     with path.open(encoding="utf-8-sig", errors="replace") as handle:
         for line in handle:
@@ -280,7 +280,7 @@ def _grid(path: Path, data: Array, x: float, y: float, z: float) -> Scan:
     short = last[-1] != (length - 1 if rises else 0) and len(last) < length <= np.sum(row == row[0])
     top = ix[iy == ny - 1]
     if short or (len(top) < nx <= np.sum(iy == 0) and np.ptp(top) < nx - 1):
-        raise ReadError(f"{path}: the last row holds fewer points than the others; the file is cut off")
+        raise ReadError(f"{path}: the last row has fewer points than the others; the file is cut off")
     heights = np.full(nx * ny, np.nan)
     heights[cells] = data[:, 2]
     return Scan(heights=heights.reshape(ny, nx) * z, spacing=(dx * x, dy * y), source=str(path))

@@ -46,7 +46,7 @@ def write_scan(
         elif suffix in (".csv", ".txt", ".xyz"):
             if xy_unit is None or z_unit is None:
                 raise InputError(
-                    f'{file}: text holds no unit, so say which: write_scan(..., xy_unit="mm", z_unit="um")'
+                    f'{file}: a text file states no unit; give it: write_scan(..., xy_unit="mm", z_unit="um")'
                 )
             text.write(scan, file, xy=scale(xy_unit, "m", name="xy_unit"), z=scale(z_unit, "m", name="z_unit"))
         else:

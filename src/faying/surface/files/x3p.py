@@ -68,7 +68,7 @@ def _member(archive: zipfile.ZipFile, name: str, limit: int, path: Path) -> byte
     try:
         info = archive.getinfo(folder_of(archive.namelist()) + name)
     except KeyError:
-        raise ReadError(f"{path}: the X3P archive holds no {name}; the file is incomplete, export it again") from None
+        raise ReadError(f"{path}: the X3P archive has no {name}; the file is incomplete, export it again") from None
     if info.file_size > limit:
         raise ReadError(f"{path}: {name} claims {info.file_size} bytes, more than the {limit} that are believable")
     try:
@@ -180,7 +180,7 @@ def _heights(archive: zipfile.ZipFile, root: ElementTree.Element, path: Path) ->
         _checksum(blob, _text(root, "Record3", "DataLink", "MD5ChecksumPointData"), link, path)
         if len(blob) != nx * ny * kind.itemsize:
             raise ReadError(
-                f"{path}: {link} holds {len(blob)} bytes where {nx} x {ny} heights of {kind.itemsize} bytes are due; "
+                f"{path}: {link} has {len(blob)} bytes where {nx} x {ny} heights of {kind.itemsize} bytes are due; "
                 "the file is cut off"
             )
         z = np.frombuffer(blob, kind).reshape(ny, nx)
