@@ -294,7 +294,7 @@ NODE = "   0.0000000000000000D+00   0.0000000000000000D+00   1.0000000000000000D
         ("a.cdb", "      244      217", "      244      217      219", "has 11 nodes in place of 10|and has 11"),
         ("a.cdb", "(3i9,6e21.13e3)", "(2147483648i9,6e21.13e3)", "is not a format"),
         ("two.msh", "2.2 0 8", "2.2 0 1.7", "has format '2.2 0 1.7'"),
-        ("small.bdf", "PLOAD4  3       31 ", "PLOAD4  3\0      31 ", "which are not load set, element and nodes"),
+        ("small.bdf", "PLOAD4  3       31 ", "PLOAD4  3\0      31 ", "which are not numbers of a load set, an element and nodes"),
         ("u.unv", "         2\np0.left", "         0         2\np0.left", "heads a group and should be 8"),
         ("u.unv", NODE, f"{NODE}\n       103         1         1        11\n{NODE[:-1]}2", "103 is given twice"),
     ],
