@@ -33,7 +33,8 @@ def test_quantities(text, unit, value):
 def test_every_comma_is_refused_with_the_right_form(text):
     """A decimal comma was dropped once: "4,5 kN" was 45 kN."""
     with pytest.raises(
-        InputError, match='has a comma; decimals take a point, thousands no mark: write for example "12 kN"'
+        InputError,
+        match='has a comma; use a decimal point, and no mark for thousands: write for example "12 kN"',
     ):
         units.parse(text, "N")
 

@@ -133,7 +133,7 @@ class _Head:
         name, unit = self.names.get(part.name), part.unit
         if name is None:
             raise ReadError(
-                f'{self.where}: the column "{text}" is unknown; known are {", ".join(self.known)}; {self.form}'
+                f'{self.where}: the column "{text}" is unknown; the known ones are {", ".join(self.known)}; {self.form}'
             )
         if name not in self.known:
             return name, 1.0

@@ -78,7 +78,7 @@ def check_data_sets(lines: Sequence[str], where: str) -> None:
             )
         elif inside and (MERGED.match(line) or _begins(line)):
             raise ReadError(
-                f"{where}, line {number}: {text[:40]!r} stands inside a data set and looks like the beginning of "
+                f"{where}, line {number}: {text[:40]!r} is inside a data set and looks like the beginning of "
                 "another; is a line -1 missing or damaged before it?"
             )
         elif inside and held in MOST_LINES:

@@ -112,7 +112,9 @@ def parse(text: object, unit: str, *, name: str = "value") -> float:
     if isinstance(text, bool) or not isinstance(text, str):
         raise InputError(f"{name} = {_short(text)} has no unit; write a number with its unit as text, {example[6:]}")
     if "," in text:
-        raise InputError(f"{name} = {_short(text)} has a comma; decimals take a point, thousands no mark: {example}")
+        raise InputError(
+            f"{name} = {_short(text)} has a comma; use a decimal point, and no mark for thousands: {example}"
+        )
     found = NUMBER.fullmatch(text)
     if found is None:
         raise InputError(f"{name} = {_short(text)} is not a quantity (one number and a unit); {example}")

@@ -182,7 +182,7 @@ def test_what_is_not_said_is_not_known(bare):
     (scatter,) = sheet.row("alpha_A").inputs
     assert DEFAULT_WAY in scatter.name
     assert sheet.row("alpha_A").result.value == pytest.approx(1.28 / 0.72)
-    with pytest.raises(faying.InputError, match="no row 'x'; there are A_req, alpha_A"):
+    with pytest.raises(faying.InputError, match="no row 'x'; give one of A_req, alpha_A"):
         sheet.row("x")
 
 
@@ -245,7 +245,7 @@ def test_a_bolt_has_its_own_table(made):
 @pytest.mark.parametrize(
     ("table", "text"),
     [
-        ({"bolt": "left"}, '"left" is not a bolt; there are "bolt"'),
+        ({"bolt": "left"}, '"left" is not a bolt; give one of "bolt"'),
         ({"tightening": "by hand"}, "is not a way of tightening"),
         ({"tightening": "feel", "tightening_factor": 2.0}, "both tightening and tightening_factor"),
         ({"tightening_factor": 0.5}, "should be a number from 1 to 10"),
@@ -369,7 +369,7 @@ def test_another_case_never_takes_stress_from_a_bolt(made):
 @pytest.mark.parametrize(
     ("table", "text"),
     [
-        ({"load": "lift"}, r'bolt_sheet\[1\].load = "lift" is not a \[\[load\]\]; there are "pull"'),
+        ({"load": "lift"}, r'bolt_sheet\[1\].load = "lift" is not a \[\[load\]\]; give one of "pull"'),
         ({"load": "pull", "axial": "1 kN"}, "has both load and axial, which the load gives"),
         ({"load": 3}, "should be the name of a load, or of several"),
     ],

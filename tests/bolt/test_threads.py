@@ -59,7 +59,7 @@ def test_threads_that_are_none(text):
 
 
 def test_a_grade_that_is_none():
-    with pytest.raises(faying.InputError, match=r"not a property class of ISO 898-1; there are 4\.6"):
+    with pytest.raises(faying.InputError, match=r"not a property class of ISO 898-1; give one of 4\.6"):
         Fastener(thread=Thread.parse("M8"), grade="A2-70")
 
 

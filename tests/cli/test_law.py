@@ -108,7 +108,7 @@ def test_csv_and_figure(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--model", "nothing"], "no contact law 'nothing'; known are"),
+        (["--model", "nothing"], "no contact law 'nothing'; the known ones are"),
         (["--D", "2.39", "--material", "45 steel"], r"JK needs G .*, m\) and scan_area"),
         ([*SPECIMEN[:6]], "no material: give --material"),
         ([*SPECIMEN, "--material", "cheese"], "no material 'cheese' in the catalogue"),

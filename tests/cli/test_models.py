@@ -40,7 +40,7 @@ def test_models_knows_one_law_and_json() -> None:
     jk = next(e for e in tree["laws"] if e["class"] == "JK")
     assert jk["parameters"]["D"]["needed"] is True
     assert jk["parameters"]["gamma"]["default"] == 1.5
-    with pytest.raises(InputError, match="known are"):
+    with pytest.raises(InputError, match="the known ones are"):
         run(models, "cube")
 
 

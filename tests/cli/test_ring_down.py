@@ -70,7 +70,7 @@ def test_a_record_may_begin_before_the_decay(record, capsys):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("time [s],force [N]\n0,1\n1,2\n", "unknown; known are time, displacement, velocity, acceleration"),
+        ("time [s],force [N]\n0,1\n1,2\n", "unknown; the known ones are time, displacement, velocity, acceleration"),
         ("time [s]\n0\n1\n", "give one of the columns displacement, velocity, acceleration"),
         ("time [s],velocity [m/s],displacement [m]\n0,1,1\n1,2,2\n", "give one of the columns"),
         ("time [s],velocity [m/s]\n0,1\n", "1 samples are too few for a record"),

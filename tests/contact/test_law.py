@@ -72,7 +72,7 @@ def test_with_changes_a_copy_and_knows_its_parameters() -> None:
 def test_laws_are_listed_and_found_by_any_spelling() -> None:
     assert laws()["JK"] is faying.JK
     assert find_law("jk") is faying.JK
-    with pytest.raises(InputError, match="known are"):
+    with pytest.raises(InputError, match="the known ones are"):
         find_law("none")
 
 

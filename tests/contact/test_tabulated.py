@@ -117,7 +117,7 @@ HEAD = "pressure [MPa],k_n [MPa/um]\n"
         ("1,40\n2,60\n", ", line 1: no head with the names of the columns; a table looks like: pressure"),
         (
             "pressure [MPa],kt [MPa/um]\n1,2\n2,3\n",
-            ', line 1: the column "kt [MPa/um]" is unknown; known are pressure, area, k_n',
+            ', line 1: the column "kt [MPa/um]" is unknown; the known ones are pressure, area, k_n',
         ),
         ("pressure [MPa],k_n [MPa/um],\n1,2\n2,3\n", ', line 1: the column "" is unknown'),
         ("k_n [MPa/um]\n1\n2\n", ', line 1: no column "pressure [unit]"; the head is k_n'),

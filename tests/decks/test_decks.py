@@ -198,7 +198,7 @@ def test_contact_properties():
 
 
 def test_nothing_is_half_written(tmp_path):
-    with pytest.raises(faying.InputError, match="no exporter for 'ls-dyna'; there are mapdl, abaqus"):
+    with pytest.raises(faying.InputError, match="no exporter for 'ls-dyna'; give one of mapdl, abaqus"):
         write(deck_of(mesh()), "ls-dyna", tmp_path / "out")
     (tmp_path / "file").write_text("")
     with pytest.raises(faying.InputError, match="cannot make the folder"):

@@ -348,7 +348,7 @@ def test_faults_of_a_mesh_file(tmp_path):
         r"40 of \d+ nodes belong to no element: 1, 2, 3, 4, 5, ...; delete them",
     )
     fault(tmp_path, good + "*ELEMENT, TYPE=C3D8\n" + turned + "\n", "element 9 is given twice")
-    fault(tmp_path, good.replace("C3D8I", "C3D27"), "elements of type C3D27 are not known; known are C3D4")
+    fault(tmp_path, good.replace("C3D8I", "C3D27"), "elements of type C3D27 are not known; the known ones are C3D4")
     fault(
         tmp_path,
         good.replace("C3D8I", "C3D20"),
@@ -372,7 +372,7 @@ def test_faults_of_a_mesh_file(tmp_path):
     fault(tmp_path, "", "is not a Gmsh mesh file", name="m.msh")
     with pytest.raises(faying.ReadError, match="no file"):
         faying.read_mesh(tmp_path / "none.inp", unit="mm")
-    with pytest.raises(faying.ReadError, match=r"files of the kind \.stl are not known; known are .*\.inp"):
+    with pytest.raises(faying.ReadError, match=r"files of the kind \.stl are not known; the known ones are .*\.inp"):
         faying.read_mesh(written(tmp_path, "", "m.stl"), unit="mm")
 
 
@@ -389,7 +389,9 @@ def test_faults_of_other_formats(tmp_path):
     mesh = two(MIXED, gap=1e-4)
     bulk = meshfiles.nastran(mesh, field="free")
     fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,5,"), "coordinate system 5 is not in the file", "m.bdf")
-    fault(tmp_path, bulk.replace("CTETRA", "CTETRX"), "elements CTETRX are not known; known are CTETRA", "m.bdf")
+    fault(
+        tmp_path, bulk.replace("CTETRA", "CTETRX"), "elements CTETRX are not known; the known ones are CTETRA", "m.bdf"
+    )
     fault(tmp_path, bulk[: bulk.index("PLOAD4")].rsplit(",", 3)[0] + "\n", "has 7 nodes; 4 or 10 are known", "m.bdf")
     fault(tmp_path, bulk.replace("GRID,100,,", "GRID,100,,x"), "GRID 100 cannot be read", "m.bdf")
     fault(tmp_path, "BEGIN BULK\nENDDATA\n", "holds 0 GRID cards", "m.bdf")
@@ -405,7 +407,7 @@ def test_faults_of_other_formats(tmp_path):
         "m.msh",
     )
     archive = meshfiles.ansys(mesh)
-    fault(tmp_path, archive.replace("SOLID186", "SOLID226"), "is of type 226; known are SOLID185", "m.cdb")
+    fault(tmp_path, archive.replace("SOLID186", "SOLID226"), "is of type 226; the known ones are SOLID185", "m.cdb")
     fault(tmp_path, archive[: archive.index("EBLOCK") + 900], "is the archive complete", "m.cdb")
     fault(tmp_path, archive.replace("EBLOCK,19,SOLID", "EBLOCK,10,COMPACT"), "EBLOCK without the key SOLID", "m.cdb")
     line = next(line for line in archive.splitlines() if line.startswith("      100"))

@@ -216,7 +216,7 @@ def test_the_result(chain):
     assert chain.quantiles((0.1, 0.9)).shape == (2, 6)
     assert chain.answered == chain.evaluations >= 256
     assert codes(chain) == ["not-told"]
-    assert "The test says nothing about unseen" in chain.notes[0].text
+    assert "The test carries no information about unseen" in chain.notes[0].text
 
 
 def test_least_squares_and_what_the_test_sees(chain):
@@ -234,7 +234,7 @@ def test_least_squares_and_what_the_test_sees(chain):
     assert abs(seen.vectors[-1, 3]) > 0.99
     assert seen.told[-1] > 0.99
     assert seen.told[0] < 0.1
-    assert seen.text.endswith("It cannot tell unseen.")
+    assert seen.text.endswith("It does not identify unseen.")
     assert "contact.c" in seen.text.partition(".  It")[0]
 
 
@@ -246,7 +246,7 @@ def test_what_is_seen_of_a_sum():
     found = identify_model(model, test, LOADS, count=COUNT, evaluations=64, test_sd=fixed(s), discrepancy=fixed(t))
     row = np.linalg.solve(np.linalg.cholesky(s**2 * np.eye(3) + t**2), np.full(3, 0.01))
     assert found.singular.values == pytest.approx([np.sqrt(2) * np.linalg.norm(row), 0], rel=1e-3, abs=1e-6)
-    assert found.singular.text == "The test sees 0.71 x1 + 0.71 x2. It cannot tell 0.71 x1 - 0.71 x2."
+    assert found.singular.text == "The test identifies 0.71 x1 + 0.71 x2. It does not identify 0.71 x1 - 0.71 x2."
     assert found.correlation[0, 1] < -0.8
 
 
@@ -367,7 +367,7 @@ def test_an_identification_is_one_page(chain):
 
     page = identified(chain, "a <chain>", "made by the model")
     assert "a &lt;chain&gt;: identification" in page
-    assert "The test says nothing about unseen" in page
+    assert "The test carries no information about unseen" in page
     assert "contact.c" in page
     assert page.count("<figure>") == 1
 
@@ -405,8 +405,11 @@ def test_the_same_seed_gives_the_same_numbers():
 
 def test_many_combinations_are_counted():
     seen = Seen(names=tuple("abcdefg"), values=np.array([9.0, 8, 7, 6, 5, 0.1, 0.0]), vectors=np.eye(7))
-    assert seen.text == "The test sees a; b; c; and 2 more combinations. It cannot tell g; f."
-    assert Seen(names=("a",), values=np.array([1.0]), vectors=np.eye(1)).text == "The test sees none of the parameters."
+    assert seen.text == "The test identifies a; b; c; and 2 more combinations. It does not identify g; f."
+    assert (
+        Seen(names=("a",), values=np.array([1.0]), vectors=np.eye(1)).text
+        == "The test identifies none of the parameters."
+    )
 
 
 @pytest.mark.parametrize(

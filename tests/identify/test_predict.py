@@ -203,7 +203,7 @@ def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, mo
         ('[uncertain]\nE = "200 to 210"', "has no unit"),
         ('[uncertain]\nfriction = "-3 to 0.1"', "is for 97% outside"),
         ('[uncertain]\npreload = "10 %"', "should be {tightening"),
-        ('[uncertain]\npreload = {tightening = "spanner"}', "is not a way of tightening; known are"),
+        ('[uncertain]\npreload = {tightening = "spanner"}', "is not a way of tightening; the known ones are"),
         ('[uncertain]\njoint.none.friction = "0.1 to 0.2"', "no joint is called 'none'"),
         ("[uncertain]\nsurface.fit = 3", "should be true or false"),
         ('[uncertain]\nlaw.model = ["jk"]', "two laws or more"),

@@ -285,5 +285,5 @@ def test_a_load_that_nothing_holds_is_refused(free):
         faying.load_cases(state, [faying.Load("a", forces=[faying.Force("p1.right", force=(100, 0, 0))])])
     with pytest.raises(faying.InputError, match="no rigid support holds"):
         faying.load_cases(state, [faying.Load("m", displacements=[faying.Displacement("p1.right", (1e-6, 0, 0))])])
-    with pytest.raises(faying.InputError, match="neither a part nor a bolt; there are 'p0', 'p1', 'b'"):
+    with pytest.raises(faying.InputError, match="neither a part nor a bolt; give one of 'p0', 'p1', 'b'"):
         faying.load_cases(state, [faying.Load("m", temperature={"nut": 3.0})])

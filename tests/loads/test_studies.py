@@ -143,7 +143,7 @@ def test_the_command(study, tmp_path, capsys):
     ("change", "said"),
     [
         (('after = "pull"', 'after = "push"'), "name each other in a circle"),
-        (('after = "pull"', 'after = "pul"'), "names the load 'pul', which is not there; there are '10 g', 'pull'"),
+        (('after = "pull"', 'after = "pul"'), "names the load 'pul', which is not there; give one of '10 g', 'pull'"),
         (('name = "push"', 'name = "pull"'), "two loads are called 'pull'"),
         (('temperature = { bolt = "20 K"', 'temperature = { bolt = "20"'), 'temperature.bolt = "20" has no unit'),
         (

@@ -199,7 +199,7 @@ def test_measured_points_from_a_table(tmp_path):
         ("acceleration [m/s^2],damping [%]\n1,2\n", 'no column "frequency [unit]"'),
         ("acceleration [m/s^2],frequency [Hz]\n1,180\n-2,170\n", 'line 3: -2 in the column "acceleration"'),
         ("acceleration [m/s^2],frequency [Hz]\n", "no rows under the head"),
-        ("acceleration [m/s^2],zeta [%]\n", "known are acceleration, displacement, frequency, damping, time"),
+        ("acceleration [m/s^2],zeta [%]\n", "the known ones are acceleration, displacement, frequency, damping, time"),
     ],
 )
 def test_a_table_of_another_form_is_refused(tmp_path, text, message):

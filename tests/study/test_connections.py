@@ -340,7 +340,7 @@ GAP = {"file": "gap.csv", "xy_unit": "mm", "gap_unit": "um"}
         ),
         ({"friction": "much"}, "should be a plain finite number"),
         ({"surface": {"D": 2.5}}, r"give scan, or D, G and scan_area \(G, scan_area missing\)"),
-        ({"law": {"model": "cube"}}, "known are"),
+        ({"law": {"model": "cube"}}, "the known ones are"),
     ],
 )
 def test_joint_faults(folder, more, text):
@@ -417,7 +417,7 @@ def test_walls_of_a_dowel_may_be_selectors(folder):
     [
         ({"walls": ["upper.pin"]}, "should be a list of 2 names or more"),
         ({"walls": ["upper.pin", "upper.pin"]}, "names the wall 'upper.pin' twice"),
-        ({"material": "cheese"}, 'material "cheese" is unknown; known are "45 steel"'),
+        ({"material": "cheese"}, 'material "cheese" is unknown; the known ones are "45 steel"'),
         ({"material": None}, "material is missing"),
         ({"diameter": "-6 mm"}, "diameter"),
         ({"ends": [["0 mm", "0 mm", "0 mm"]]}, "should be a list of two points"),

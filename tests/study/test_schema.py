@@ -64,7 +64,10 @@ def test_the_template_is_a_study(folder):
         ({"geometry__step": "none.step"}, "geometry.step: no file"),
         ({"geometry__size": "-1 mm"}, "must be positive"),
         ({"geometry__size": None}, "geometry.size is missing"),
-        ({"part__upper__material": "cheese"}, 'part.upper.material = "cheese" is unknown; known are "45 steel"'),
+        (
+            {"part__upper__material": "cheese"},
+            'part.upper.material = "cheese" is unknown; the known ones are "45 steel"',
+        ),
         ({"joint__0__faces": ["a"]}, "should be a list of 2 names"),
         ({"joint__0__springs": "per-atom"}, "should be one of per-area, per-node"),
         ({"law__closure": "wrong"}, 'allowed is "consistent" or "printed"'),

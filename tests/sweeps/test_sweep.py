@@ -220,7 +220,7 @@ def test_values_of_an_axis():
     ("text", "message"),
     [
         ("surface.D", "give key=first:last:count"),
-        ("part.upper=1:2:3", "a sweep varies what acts on the joints"),
+        ("part.upper=1:2:3", "a sweep varies "),
         ("bolt.preload=1:20:30", "give the unit|unit"),
         ("surface.D=2.2:2.6:1", "whole number from 2 to"),
         ("surface.D=2.2:2.2:3", "ends must differ"),

@@ -65,7 +65,7 @@ class BoltSheet:
         for row in self.rows:
             if row.result.symbol == symbol:
                 return row
-        raise InputError(f"no row {symbol!r}; there are {', '.join(row.result.symbol for row in self.rows)}")
+        raise InputError(f"no row {symbol!r}; give one of {', '.join(row.result.symbol for row in self.rows)}")
 
     def to_dict(self) -> dict[str, Any]:
         """Return the sheet in SI units, for JSON."""

@@ -81,8 +81,8 @@ def against_exact_contact(case: Case, state: LoadedCase) -> list[Note]:
             name, factor = found.worst
             remedy = "a finer scan" if name == COARSE else "a larger scan, or several,"
             text = (
-                f"{at}: {law.name} has {factor:.2g} times the k_n on the {name} of the scan that it has on the whole: "
-                f"{remedy} would say which one holds"
+                f"{at}: {law.name} has {factor:.2g} times the k_n on the {name} of the scan, compared with all of it; "
+                f"{remedy} shows which one is right"
             )
             out.append(Note(code="window", joint=joint.name, text=text))
     return out

@@ -74,13 +74,13 @@ class SolidBolt:
         met = [f for f in joined if mesh.face_part.get(f) == part and np.isin(mesh.face_nodes(f), layer).any()]
         if met:
             raise InputError(
-                f"bolt {self.name!r}: the plane through {_mm(place)} mm in which it is drawn in meets its face "
+                f"bolt {self.name!r}: the plane through {_mm(place)} mm that cuts its shank meets its face "
                 f"{met[0]!r}, which is in a joint; give a point of the bare shank as `at`, or a finer mesh"
             )
         others = [other for other in mesh.parts if other != part and np.isin(mesh.part_nodes(other), layer).any()]
         if others:
             raise InputError(
-                f"bolt {self.name!r}: the plane through {_mm(place)} mm in which it is drawn in meets nodes that it "
+                f"bolt {self.name!r}: the plane through {_mm(place)} mm that cuts its shank meets nodes that it "
                 f"shares with {others[0]!r}, to which it is bonded; give a point of the bare shank as `at`"
             )
         if 3 * len(layer) > MOST:

@@ -124,7 +124,7 @@ class Thread:
             if isclose(1e3 * diameter, size, rel_tol=1e-9):
                 return cls(diameter=diameter, pitch=pitch * 1e-3)
         raise InputError(
-            f"no coarse thread has a diameter of {show(diameter, 'm')}; there are "
+            f"no coarse thread has a diameter of {show(diameter, 'm')}; give one of "
             f'{", ".join(f"M{size}" for size in COARSE)}; give thread = "M8x1" with its pitch'
         )
 
@@ -221,7 +221,9 @@ class Fastener:
 
     def __post_init__(self) -> None:
         if self.grade not in PROOF:
-            raise InputError(f'grade "{self.grade}" is not a property class of ISO 898-1; there are {", ".join(PROOF)}')
+            raise InputError(
+                f'grade "{self.grade}" is not a property class of ISO 898-1; give one of {", ".join(PROOF)}'
+            )
         if not LEAST <= self.thread.diameter <= GREATEST:
             raise InputError(
                 f"thread {self.thread}: the property classes of ISO 898-1 cover M1.6 to M39; leave out grade"

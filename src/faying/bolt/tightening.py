@@ -47,5 +47,5 @@ def tightening(name: object, where: str) -> Tightening:
     """The way of tightening of a name. Raises InputError that lists those known."""
     if not isinstance(name, str) or name not in TIGHTENING:
         known = "; ".join(f'"{one}" (+-{way.scatter:.0%})' for one, way in TIGHTENING.items())
-        raise InputError(f"{where} = {name!r} is not a way of tightening; known are {known}")
+        raise InputError(f"{where} = {name!r} is not a way of tightening; the known ones are {known}")
     return TIGHTENING[name]

@@ -320,7 +320,7 @@ def _heated(study: Study) -> list[tuple[str, str]]:
     return [
         (
             f"load[{k}].temperature",
-            f"load {load.name!r}: temperature of {name!r}, which is neither a part nor a bolt; there are "
+            f"load {load.name!r}: temperature of {name!r}, which is neither a part nor a bolt; give one of "
             f"{', '.join(map(repr, known))}",
         )
         for k, load in enumerate(study.load_cases, 1)

@@ -117,7 +117,9 @@ def find(name: str) -> LawKind:
     if kind is None:
         near = get_close_matches(_plain(name), known, n=1)
         hint = f"; did you mean {known[near[0]].label}?" if near else ""
-        raise InputError(f"no contact law {_quoted(name)}{hint}; known are {', '.join(sorted(kinds(), key=str.lower))}")
+        raise InputError(
+            f"no contact law {_quoted(name)}{hint}; the known ones are {', '.join(sorted(kinds(), key=str.lower))}"
+        )
     return kind
 
 

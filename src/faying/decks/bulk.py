@@ -200,7 +200,7 @@ class Bulk:
         elif kind := nastran_kind(name):
             self.constraints.setdefault(kind, []).append(name)
         elif name.startswith("C") and not name.startswith(_NO_ELEMENTS):
-            raise ReadError(f"{where}: elements {name} are not known; known are {', '.join(COUNTS)}")
+            raise ReadError(f"{where}: elements {name} are not known; the known ones are {', '.join(COUNTS)}")
 
     def _grid(self, fields: list[str], where: str) -> None:
         x, y, z = (number(word) if word else 0.0 for word in fields[2:5])

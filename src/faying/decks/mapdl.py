@@ -297,7 +297,7 @@ def _elements(
             dropped[number] = which
             continue
         if which not in _SOLIDS:
-            raise ReadError(f"element {number} is of type {which}; known are SOLID185, 186, 187 and 285")
+            raise ReadError(f"element {number} is of type {which}; the known ones are SOLID185, 186, 187 and 285")
         kind, ordered = undoubled(
             nodes[: _SOLIDS[which]] if which != "285" else nodes[:4], f"element {number} (SOLID{which})"
         )

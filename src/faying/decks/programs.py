@@ -50,6 +50,7 @@ def reader_of(path: Path, formats: dict[str, str], more: tuple[str, ...] = ()) -
     suffix = path.suffix.lower()
     if suffix not in formats:
         raise ReadError(
-            f"{path}: files of the kind {suffix or '(none)'} are not known; known are {', '.join([*formats, *more])}"
+            f"{path}: files of the kind {suffix or '(none)'} are not known; the known ones are "
+            f"{', '.join([*formats, *more])}"
         )
     return module_of(formats[suffix])

@@ -209,7 +209,7 @@ def _elements(block: Block, scope: Scope) -> None:
         count = _SHEET_COUNT[sheet.group(1)]
     else:
         raise ReadError(
-            f"{block.where}: elements of type {kind or 'none'} are not known; known are "
+            f"{block.where}: elements of type {kind or 'none'} are not known; the known ones are "
             f"{', '.join(_SOLID)} with their variants, and triangles and quadrangles as faces"
         )
     table = index(_of_equal_length(block, count + 1)).reshape(-1, count + 1)

@@ -153,7 +153,7 @@ def _elements(
             beams += nodes
         else:
             known = ", ".join(f"{c} ({kind})" for c, (kind, _) in _KINDS.items())
-            raise ReadError(f"{path}: elements of kind {code} are not known; known are {known}")
+            raise ReadError(f"{path}: elements of kind {code} are not known; the known ones are {known}")
     return beams
 
 

@@ -71,7 +71,7 @@ def read(path: Path) -> RawMesh:
         elif block.type in _PASSED:
             extra.append(cells.ravel())
         else:
-            raise ReadError(f"{path}: cells of type {block.type} are not known; known are {', '.join(_KINDS)}")
+            raise ReadError(f"{path}: cells of type {block.type} are not known; the known ones are {', '.join(_KINDS)}")
     if not elements:
         raise ReadError(f"{path} has no solid cells")
     return RawMesh(

@@ -14,7 +14,7 @@ from faying.files import together, write_text
 def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
     """Write the decks of `solver` and joint_pairs.csv (SI units). Raises InputError for a solver that is not known."""
     if solver not in SOLVERS:
-        raise InputError(f"no exporter for {solver!r}; there are {', '.join(SOLVERS)}")
+        raise InputError(f"no exporter for {solver!r}; give one of {', '.join(SOLVERS)}")
     ends = np.union1d(deck.pairs.first, deck.pairs.second)
     turned = ends[deck.mesh.turned[ends]] if deck.mesh.turned is not None else ends[:0]
     if len(turned):
@@ -32,7 +32,7 @@ def write_condensed(deck: CondensedDeck, solver: str, folder: Path) -> list[Path
     """Write a condensed joint for `solver`. Raises InputError for one that takes no such matrix."""
     if solver not in CONDENSED:
         raise InputError(
-            f"{solver!r} has no exporter for a matrix between two points with rotations; there are "
+            f"{solver!r} has no exporter for a matrix between two points with rotations; take one of "
             f"{', '.join(CONDENSED)}. faying attach writes the springs of the joint for {', '.join(SOLVERS)}"
         )
     return _written(module_of(solver).condensed(deck), folder)

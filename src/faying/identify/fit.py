@@ -68,8 +68,8 @@ class Seen(Recorded):
         """What the test sees and what it does not, in a sentence or two."""
         seen = self._listed(np.flatnonzero(self.told < SEEN))
         unseen = self._listed(np.flatnonzero(self.told > UNSEEN)[::-1])
-        first = f"The test sees {seen}." if seen else "The test sees none of the parameters."
-        return f"{first} It cannot tell {unseen}." if unseen else first
+        first = f"The test identifies {seen}." if seen else "The test identifies none of the parameters."
+        return f"{first} It does not identify {unseen}." if unseen else first
 
     def _listed(self, which: Index) -> str:
         rest = len(which) - SHOWN

@@ -62,7 +62,7 @@ def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: 
         # of ln x for a lognormal: pressed against its upper end, x itself scatters by more than before
         told = float(prior.standardised(values).std(ddof=1) / prior.sd_standardised)
         if told > UNSEEN and not of_noise:
-            text = f"The test says nothing about {name}: its posterior sd is {told:.0%} of its prior's."
+            text = f"The test carries no information about {name}: its posterior sd is {told:.0%} of its prior's."
             out.append(Note(code="not-told", text=text))
         ends = prior.quantile(np.array([END, 1 - END]))
         for share, side in ((np.mean(values < ends[0]), "lower"), (np.mean(values > ends[1]), "upper")):

@@ -122,7 +122,7 @@ def _proof(bolt: Bolt | SolidBolt, force: float) -> list[Note]:
     what = f"bolt {bolt.name!r}: {show(force, 'N')} are {force / proof:.0%} of the proof load of {fastener.thread} "
     what += f"{fastener.grade}, {show(proof, 'N')} (ISO 898-1)"
     if force > proof:
-        text = f"{what}: the bolt stretches for good; the shank stays elastic here. Lower the preload, or take another"
+        text = f"{what}: the bolt stretches permanently, which the model leaves out. Lower the preload, or take another"
         return [Note(code="beyond-proof", load=force, text=text)]
     text = f"{what}, more than the {USED:.0%} that a bolt is usually tightened to"
     return [Note(code="near-proof", load=force, text=text)]

@@ -144,7 +144,9 @@ def _heat(structure: Structure, changes: Mapping[str, float], what: str) -> tupl
                 part = getattr(bolts[names.index(name)].bolt, "part", "")
                 raise InputError(f"{what}: bolt {name!r} is meshed; give the temperature of its part, {part!r}")
             known = ", ".join(map(repr, (*mesh.parts, *names)))
-            raise InputError(f"{what}: temperature of {name!r}, which is neither a part nor a bolt; there are {known}")
+            raise InputError(
+                f"{what}: temperature of {name!r}, which is neither a part nor a bolt; give one of {known}"
+            )
     return force, longer, strains
 
 

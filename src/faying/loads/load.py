@@ -218,7 +218,9 @@ def in_order(loads: Sequence[Load]) -> list[Load]:
         for other in load.needs:
             if other not in by_name:
                 known = ", ".join(map(repr, by_name))
-                raise InputError(f"load {load.name!r} names the load {other!r}, which is not there; there are {known}")
+                raise InputError(
+                    f"load {load.name!r} names the load {other!r}, which is not there; give one of {known}"
+                )
     out: list[Load] = []
     left = list(loads)
     while left:

@@ -31,8 +31,8 @@ def load_notes(
             if joints.sliding[k, j] > WHOLLY:
                 borne = f"{show(float(joints.shear_force[k, j]), 'N')} and {show(float(joints.torque[k, j]), 'N*m')}"
                 text = (
-                    f"load {case!r}: {joint.name} slides wholly; its friction bears {borne}, and the bolts the rest, "
-                    "across their shanks (V)"
+                    f"load {case!r}: {joint.name} slides on all of its area; friction carries {borne}, the bolts the "
+                    "rest, by shear of their shanks (V)"
                 )
                 out.append(Note(code="load-slides", joint=joint.name, text=text))
         for b, fitted in enumerate(structure.fitted_bolts):
@@ -40,8 +40,8 @@ def load_notes(
     sticking = [joint.name for joint in structure.joints if joint.friction is None]
     if sticking:
         text = (
-            f"{', '.join(sticking)} sticks everywhere under the loads, since no friction is given: friction needed is "
-            "what it would take. joint.friction lets it slip"
+            f"{', '.join(sticking)} sticks everywhere under the loads, since no friction is given; the table has the "
+            'friction that it needs ("mu >"). Give joint.friction to let it slip'
         )
         out.append(Note(code="loads-stick", text=text))
     return out
@@ -50,7 +50,7 @@ def load_notes(
 def _joint(case: str, name: str, contact: LoadedContact, pressure: Array, opened: float) -> list[Note]:
     out, weights, law = [], contact.weights, contact.law
     if not np.any(pressure > 0):
-        text = f"load {case!r}: {name} opens wholly; the bolts alone hold its parts together"
+        text = f"load {case!r}: {name} opens fully; the bolts alone hold its parts together"
         out.append(Note(code="load-opens", joint=name, share=1.0, text=text))
     share = float(weights @ (pressure > law.model.greatest_pressure) / weights.sum())
     if share > 0:
@@ -63,7 +63,7 @@ def _joint(case: str, name: str, contact: LoadedContact, pressure: Array, opened
     if law.yields and more > LITTLE * float(weights @ contact.pressure):
         text = (
             f"load {case!r}: {name} is pressed harder in places than by the preload, with {show(more, 'N')} more in "
-            f"all; asperities of {law.model.name} would yield further there and close more, which is left out"
+            f"all; asperities of {law.model.name} would yield further there and close more, which the model leaves out"
         )
         out.append(Note(code="load-yields", joint=name, text=text))
     return out
@@ -77,7 +77,7 @@ def _bolt(case: str, bolt: object, force: float) -> list[Note]:
     if fastener is not None and force > fastener.proof_load:
         text = (
             f"load {case!r}: bolt {name!r} carries {show(force, 'N')}, more than its proof load of "
-            f"{show(fastener.proof_load, 'N')}; it stretches for good, which is left out"
+            f"{show(fastener.proof_load, 'N')}; it stretches permanently, which the model leaves out"
         )
         return [Note(code="beyond-proof", load=force, text=text)]
     return []

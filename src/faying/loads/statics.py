@@ -445,7 +445,7 @@ class LoadStatics:
             for k, (contact, motion) in enumerate(zip((c for _, c in self.joints), state.motions, strict=True))
             if not np.any(contact.normal(motion)[0] > 0)
         ]
-        where = f"; joint {apart[0] + 1} is wholly open, and nothing holds its parts together" if apart else ""
+        where = f"; joint {apart[0] + 1} is fully open, and nothing holds its parts together" if apart else ""
         where = where or self._sheared(state)
         return NotConverged(
             f"load {task.name!r}: no equilibrium is found, an error of {task.error:.1e} is left{where}; give more "

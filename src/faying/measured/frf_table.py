@@ -114,7 +114,8 @@ def _role(cell: Cell, where: str) -> str:
     if len(found) != 1:
         what = "is unknown" if not found else f"may be {' or '.join(found)}"
         raise ReadError(
-            f'{where}: the column "{cell.text}" {what}; known are {", ".join(ROLES)}; leave other columns out; {FORM}'
+            f'{where}: the column "{cell.text}" {what}; the known ones are {", ".join(ROLES)}; leave other '
+            f"columns out; {FORM}"
         )
     return found[0]
 

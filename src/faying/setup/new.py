@@ -72,7 +72,7 @@ def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force:
     """
     unknown = [name for name in answers.materials.values() if name not in CATALOGUE]
     if unknown:
-        raise InputError(f'material "{unknown[0]}" is not in the catalogue; there are {", ".join(CATALOGUE)}')
+        raise InputError(f'material "{unknown[0]}" is not in the catalogue; give one of {", ".join(CATALOGUE)}')
     if answers.scan is not None and not answers.scan.is_file():
         raise InputError(f"no scan {answers.scan}")
     made = [out.name] if answers.scan is not None else [out.name, scan_name(out)]

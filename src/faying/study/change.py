@@ -51,7 +51,7 @@ def _set(table: dict[str, Any], keys: Declared, parts: Sequence[str], value: Any
     what = keys.get(name) or keys.get(NAME)
     if what is None:
         near = get_close_matches(name, keys, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(keys)}"
+        hint = f"did you mean {near[0]}?" if near else f"give one of {', '.join(keys)}"
         raise InputError(f'"{path}" is not a key of a study: {name!r}; {hint}')
     if not rest:
         if value is None:
@@ -81,7 +81,7 @@ def _set_in_list(table: dict[str, Any], what: Inner, parts: Sequence[str], value
         if not chosen:
             near = get_close_matches(parts[1], what.keys, n=1)
             hint = f"; did you mean {near[0]}?" if near else ""
-            raise InputError(f'"{path}": no {name} is called {parts[1]!r}; there are {", ".join(names)}{hint}')
+            raise InputError(f'"{path}": no {name} is called {parts[1]!r}; give one of {", ".join(names)}{hint}')
         if not rest:
             raise InputError(f'"{path}" is a {name}, not a key; add one of its keys: {", ".join(what.keys)}')
     for one in chosen:

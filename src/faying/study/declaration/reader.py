@@ -165,5 +165,5 @@ class Table:
         for key in self.data:
             if key not in self._known:
                 near = get_close_matches(key, self._known, n=1)
-                hint = f"; did you mean {near[0]}?" if near else f"; known are {', '.join(self._known)}"
+                hint = f"; did you mean {near[0]}?" if near else f"; the known ones are {', '.join(self._known)}"
                 self.faults.add(f"{self._name(key)} is not a key that a study has{hint}")

@@ -142,7 +142,7 @@ def _material(table: Table, bolt: str, materials: Mapping[str, Material]) -> Mat
     if name is None or name in materials:
         return materials.get(name) if name is not None else None
     known = ", ".join(f'"{m}"' for m in materials)
-    table.faults.add(f'bolt {bolt!r}: material "{name}" is unknown; known are {known}')
+    table.faults.add(f'bolt {bolt!r}: material "{name}" is unknown; the known ones are {known}')
     return None
 
 

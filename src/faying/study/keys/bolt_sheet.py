@@ -56,7 +56,7 @@ class BoltSheetChoice:
         name = table.get("bolt")
         if name is not None and name not in bolts:
             known = ", ".join(f'"{one}"' for one in bolts)
-            table.faults.add(f'{table.where}.bolt = "{name}" is not a bolt; there are {known}')
+            table.faults.add(f'{table.where}.bolt = "{name}" is not a bolt; give one of {known}')
         way = table.get("tightening")
         if way is not None:
             table.made(lambda: tightening(way, f"{table.where}.tightening"))
@@ -64,7 +64,7 @@ class BoltSheetChoice:
         lacking = [one for one in loads if one not in cases]
         if lacking:
             known = ", ".join(f'"{one}"' for one in cases) or "none"
-            table.faults.add(f'{table.where}.load = "{lacking[0]}" is not a [[load]]; there are {known}')
+            table.faults.add(f'{table.where}.load = "{lacking[0]}" is not a [[load]]; give one of {known}')
         for key in ("axial", "transverse", "introduction", "thermal_loss"):
             if loads and key in table.data:
                 table.faults.add(f"{table.where} has both load and {key}, which the load gives; leave one out")

@@ -31,7 +31,7 @@ def _dowel(table: Table, index: int, materials: Mapping[str, Material]) -> Dowel
     table.close()
     if material is not None and material not in materials:
         known = ", ".join(f'"{one}"' for one in materials)
-        table.faults.add(f'dowel {name!r}: material "{material}" is unknown; known are {known}')
+        table.faults.add(f'dowel {name!r}: material "{material}" is unknown; the known ones are {known}')
         return None
     if material is None or not walls:
         return None

@@ -30,7 +30,7 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
         material = table.get("material")
         if material is not None and material not in materials:
             known = ", ".join(f'"{m}"' for m in materials)
-            top.faults.add(f'part.{name}.material = "{material}" is unknown; known are {known}')
+            top.faults.add(f'part.{name}.material = "{material}" is unknown; the known ones are {known}')
         elif material is not None and materials[material].density is None:
             top.faults.add(f'part.{name}: material "{material}" has no density; modes need one')
         elif material is not None and materials[material].nu > STIFFEST:

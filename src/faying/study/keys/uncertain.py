@@ -283,7 +283,7 @@ class _Reader:
         }.get(parts[0])
         named = len(parts) == 4 or (len(parts) == 3 and parts[1] != "form")
         if names is not None and named and parts[1] not in names:
-            raise InputError(f"{where}: no {parts[0]} is called {parts[1]!r}; there are {', '.join(names)}")
+            raise InputError(f"{where}: no {parts[0]} is called {parts[1]!r}; give one of {', '.join(names)}")
         if parts[0] == "bolt" and parts[-1] == "preload" and self.known.loads > 1:
             raise InputError(
                 f"{where}: the study has {self.known.loads} preloads; let a factor on all of them scatter, for example "
