@@ -294,7 +294,7 @@ NODE = "   0.0000000000000000D+00   0.0000000000000000D+00   1.0000000000000000D
         ("a.cdb", "      244      217", "      244      217      219", "has 11 nodes in place of 10|and has 11"),
         ("a.cdb", "(3i9,6e21.13e3)", "(2147483648i9,6e21.13e3)", "is not a format"),
         ("two.msh", "2.2 0 8", "2.2 0 1.7", "has format '2.2 0 1.7'"),
-        ("small.bdf", "PLOAD4  3       31 ", "PLOAD4  3\0      31 ", "which are not numbers of a load set, an element and nodes"),
+        ("small.bdf", "PLOAD4  3       31 ", "PLOAD4  3\0      31 ", "are not numbers of a load set, an element and"),
         ("u.unv", "         2\np0.left", "         0         2\np0.left", "heads a group and should be 8"),
         ("u.unv", NODE, f"{NODE}\n       103         1         1        11\n{NODE[:-1]}2", "103 is given twice"),
     ],
@@ -343,7 +343,7 @@ def test_parts_that_lose_their_name_are_said(seeds, name, begins, change, says):
         ("systems.uff", "         2\n  0.00000e+00  0.0", "         0\n  0.00000e+00  0.0", "the mode moves point 0"),
         ("systems.uff", "  1.00000e-02  0.0", "  10  1.00000e-02  0.0", "should have two lines of six numbers"),
         ("systems.uff", "         2         1         1", "         2         1        -1", "moves in the system -1"),
-        ("real.uff", "    -1\n", "    -1\x0b\n", "is between two data sets|is not the number|is no universal file"),
+        ("real.uff", "    -1\n", "    -1\x0b\n", "is between two data sets|is not the number|is not a universal file"),
     ],
 )
 def test_a_test_whose_numbers_lost_their_place_is_refused(seeds, name, old, new, match):
