@@ -78,7 +78,7 @@ def test_a_whole_table_is_changed(study):
         ("geometry.sise", "9 mm", "'sise'; did you mean size?"),
         ("nothing.at.all", 1, "is not a key of a study: 'nothing'; give one of title, material"),
         ("bolt.left.preload", "1 kN", "no bolt is called 'left'; give one of bolt"),
-        ("bolt.prelod", "1 kN", "there are bolt; did you mean preload"),
+        ("bolt.prelod", "1 kN", "give one of bolt; did you mean preload"),
         ("bolt.bolt", "1 kN", "is a bolt, not a key; add one of its keys: name, faces"),
         ("support.face", "upper.end", r"the study has no \[\[support\]\]"),
         ("title.of.it", "x", "title has no other keys; leave out of.it"),
