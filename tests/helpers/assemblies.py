@@ -142,15 +142,25 @@ def segments(path):
     return _write(path, base=base, **{f"segment {k}": solid for k, solid in enumerate(found, 1)})
 
 
-def cover(path, pins_drawn=False):
-    """A cover of 10 mm on a frame, with four M6 and two holes of 6 mm for dowels, blind in the frame."""
+def cover(path, pins_drawn=False, bore=0.0):
+    """A cover of 10 mm on a frame, with four M6 and two holes of 6 mm for dowels, blind in the frame.
+
+    bore: diameter of a hole through the pins.
+    """
     bolts = ((10, 10), (110, 10), (10, 70), (110, 70))
     pins = ((60, 10), (60, 70))
     plate = _drilled(_drilled(_box((0, 120), (0, 80), (30, 40)), bolts, 30, 40, 6.6), pins, 30, 40, 6)
     frame = _box((0, 120), (0, 80), (0, 30)) - _box((20, 100), (20, 60), (0, 30))
     frame = _drilled(_drilled(frame, bolts, 0, 30, 6.6), pins, 18, 30, 6)
     _, cylinder = _shapes()
-    more = {f"pin {k}": cylinder(x, y, 18, 40, 3) for k, (x, y) in enumerate(pins, 1)} if pins_drawn else {}
+    more = (
+        {
+            f"pin {k}": _drilled(cylinder(x, y, 18, 40, 3), [(x, y)] if bore else (), 18, 40, bore)
+            for k, (x, y) in enumerate(pins, 1)
+        }
+        if pins_drawn
+        else {}
+    )
     return _write(path, cover=plate, frame=frame, **more)
 
 

@@ -106,6 +106,12 @@ def test_pins_as_parts_are_dowels(folder):
     assert said == [f"dowel 'dowel {k}': 6 mm thick, 12 mm in 'frame', 10 mm in 'cover'" for k in (1, 2)]
 
 
+def test_hollow_pins_are_said_to_count_as_solid(folder):
+    found = new.find(assemblies.cover(folder / "tubes.step", pins_drawn=True, bore=4.0))
+    assert len(found.dowels) == 2
+    assert all("it is hollow and counts as solid" in dowel.remark for dowel in found.dowels)
+
+
 def test_open_holes_of_a_clearance_size_are_bolts_although_a_pin_would_fit(folder):
     """10 mm is the coarse clearance hole of M8 and the diameter of a pin: the study says so."""
     path = assemblies.flanges(folder / "ten.step", hole=10.0)

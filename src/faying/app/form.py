@@ -323,7 +323,7 @@ def _faces(data: Any, key: str = "") -> Iterator[str]:
     """The names of faces in a study."""
     if key in ("face", "face_size") and isinstance(data, Mapping) and "part" not in data:
         yield from data
-    elif key in ("face", "faces") and isinstance(data, str | list):
+    elif key in ("face", "faces", "walls") and isinstance(data, str | list):
         yield from [one for one in ([data] if isinstance(data, str) else data) if isinstance(one, str)]
     elif isinstance(data, Mapping):
         for name, value in data.items():

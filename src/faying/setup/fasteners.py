@@ -2,14 +2,16 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from math import pi
 
 import numpy as np
 
-from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, TouchingFaces
 from faying.typing import Array
 
 SLENDER = 1.5  # shank diameters from its axis, beyond which a part with a shank is not a bolt (but a spigot, say)
 NUT = 1.25, 2.5  # shank diameters: the farthest that a nut reaches from the axis, and how long it is at most
+SOLID = 0.75  # of the volume of a cylinder, below which a pin is hollow
 TIGHT = 1e-2  # of the radius: gap between shank and hole below which they fit without play
 
 Side = tuple[str, int]
@@ -28,12 +30,17 @@ class MeshedBolt:
 
 @dataclass(frozen=True, kw_only=True)
 class DrawnPin:
-    """A part that is a dowel: the part, its shank, the faces of the holes that it fits, and its two ends [m]."""
+    """A part that is a dowel.
+
+    part, shank: its name and its face; holes: faces of the holes that it fits; ends: where it begins and ends [m];
+    hollow: whether it has much less volume than a cylinder between its ends, as a spring pin has.
+    """
 
     part: str
     shank: FaceFacts
     holes: tuple[FaceFacts, ...]
     ends: tuple[Point, Point]
+    hollow: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +116,7 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
         tight = {hole.part for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0)}
         if not low and not high and len(tight) > 1 and not _nuts(facts, mine):
             holes = tuple(hole for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0))
-            dowels.append(DrawnPin(part=part.name, shank=shank, holes=holes, ends=_ends(facts, part.name, shank)))
+            dowels.append(_pin(facts, part, shank, holes))
         else:
             others.append(part.name)
             shafts.append(shank)
@@ -166,6 +173,12 @@ def _reach(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[float, fl
     arm = points - np.array(shank.start)
     depth = arm @ axis
     return float(np.linalg.norm(arm - np.outer(depth, axis), axis=1).max()), float(np.ptp(depth))
+
+
+def _pin(facts: GeometryFacts, part: PartFacts, shank: FaceFacts, holes: tuple[FaceFacts, ...]) -> DrawnPin:
+    ends = _ends(facts, part.name, shank)
+    cylinder = pi * (shank.radius or 0.0) ** 2 * float(np.linalg.norm(np.subtract(*ends)))
+    return DrawnPin(part=part.name, shank=shank, holes=holes, ends=ends, hollow=part.volume < SOLID * cylinder)
 
 
 def _ends(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[Point, Point]:

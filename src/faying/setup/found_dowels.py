@@ -42,6 +42,9 @@ def found_dowels(facts: GeometryFacts, fasteners: Fasteners) -> list[FoundDowel]
                 walls.setdefault(hole.part, []).append(hole)
         if len(walls) > 1:
             remark = f"{show(2 * (pin.shank.radius or 0.0), 'm')}, a pin of the file"
+            remark += (
+                "; it is hollow and counts as solid, too stiff and too heavy: take it out or soften it" * pin.hollow
+            )
             found.append(FoundDowel(walls=tuple(map(tuple, walls.values())), ends=pin.ends, remark=remark))
     solid = {bolt.part for bolt in fasteners.meshed}
     for stack in rows([bore for bore in bores(facts) if bore.part not in solid], reach=0.01 * facts.size):
