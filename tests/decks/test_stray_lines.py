@@ -73,6 +73,15 @@ def spoilt(path, begins, change, after=0):
     return other
 
 
+def reworded(path, old, new):
+    """The file with one piece of its text replaced, where it stands first."""
+    text = path.read_text()
+    assert old in text
+    other = path.with_name(f"reworded-{path.name}")
+    other.write_text(text.replace(old, new, 1))
+    return other
+
+
 @pytest.mark.parametrize(
     ("name", "line", "says"),
     [
@@ -300,12 +309,8 @@ NODE = "   0.0000000000000000D+00   0.0000000000000000D+00   1.0000000000000000D
     ],
 )
 def test_a_mesh_with_more_than_its_form_is_refused(seeds, name, old, new, match):
-    other = seeds[name].with_name(f"more-{name}")
-    text = seeds[name].read_text()
-    assert old in text
-    other.write_text(text.replace(old, new, 1))
     with pytest.raises(faying.ReadError, match=match):
-        faying.read_mesh(other, unit="mm")
+        faying.read_mesh(reworded(seeds[name], old, new), unit="mm")
 
 
 def test_a_continuation_that_is_there_twice_is_refused(seeds):
@@ -347,9 +352,5 @@ def test_parts_that_lose_their_name_are_said(seeds, name, begins, change, says):
     ],
 )
 def test_a_test_whose_numbers_lost_their_place_is_refused(seeds, name, old, new, match):
-    other = seeds[name].with_name(f"place-{name}")
-    text = seeds[name].read_text()
-    assert old in text
-    other.write_text(text.replace(old, new, 1))
     with pytest.raises(faying.ReadError, match=match):
-        faying.read_uff(other)
+        faying.read_uff(reworded(seeds[name], old, new))
