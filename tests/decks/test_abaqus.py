@@ -106,7 +106,7 @@ def fault(tmp_path, text, match, kind=faying.ReadError):
         ("*NSET, NSET=x, GENERATE\n1, 9, 0\n", "a range from 1 to 9 by 0"),
         ("*NSET, NSET=x\nx\n", "names the set 'x', which is not in the file or is part of it"),
         ("*ELEMENT, TYPE=C3D8I\n", "0 numbers do not make elements of 8 nodes; is the file complete"),
-        ("*ELEMENT, TYPE=C3D4,", "the file ends in a keyword that goes on; is it complete?"),
+        ("*ELEMENT, TYPE=C3D4,", "the file ends within a keyword; is it complete?"),
         ("*SURFACE, TYPE=CUTTING SURFACE, NAME=x\n1, S1\n", r"\*SURFACE of this type is not known"),
     ],
 )

@@ -208,7 +208,7 @@ def test_equal_names_are_numbered_with_a_note(tmp_path):
 
 
 def test_solids_that_are_in_no_assembly_are_not_lost_without_a_word(tmp_path):
-    with pytest.raises(faying.ReadError, match="2 solids, of which the CAD kernel reads 1: .* export them as one"):
+    with pytest.raises(faying.ReadError, match="2 solids, but the CAD kernel reads 1: .* export them as one"):
         mesh_step(assembly(tmp_path, ("a", "a"), ("b", "b"), loose=True), size=8e-3)
 
 

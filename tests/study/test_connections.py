@@ -71,9 +71,7 @@ def test_a_solid_bolt(folder):
         study(folder, bolt=[given | {"torque": "20 N m", "nut_factor": 0.2} | SHANK | {"seat": ["9 mm", "16 mm"]}])
     with pytest.raises(faying.InputError, match=r"1 fault\n.*leave out material$"):
         study(folder, bolt=[given | {"preload": "2 kN", "material": "45 steel"}])
-    with pytest.raises(
-        faying.InputError, match=r"bolt\[1\].diameter goes only with torque here, since the part 'bolt'"
-    ):
+    with pytest.raises(faying.InputError, match=r"bolt\[1\].diameter is for torque only, since the part 'bolt'"):
         study(folder, bolt=[given | {"preload": "2 kN", "diameter": "8 mm"}])
 
 

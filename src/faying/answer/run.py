@@ -369,7 +369,7 @@ def _closing_notes(study: Study, rigid: Array, first: float) -> list[Note]:
         out.append(Note(code="load-cases", text=text))
     if len(rigid) and rigid.max() > NOT_ZERO * first:
         text = (
-            f"a rigid-body motion comes out at {rigid.max():.2g} Hz instead of 0: rounding has cost the frequencies "
+            f"a rigid-body motion is at {rigid.max():.2g} Hz instead of 0: rounding has cost the frequencies "
             "digits, most those near it; look for parts or springs far stiffer than the rest"
         )
         out.append(Note(code="rigid", text=text))

@@ -57,7 +57,7 @@ def blocks(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = No
         while line.rstrip().endswith(","):
             more = next(lines, None)
             if more is None:
-                raise ReadError(f"{path}, line {number}: the file ends in a keyword that goes on; is it complete?")
+                raise ReadError(f"{path}, line {number}: the file ends within a keyword; is it complete?")
             line = line.rstrip() + more[1]
         if current is not None:
             yield current

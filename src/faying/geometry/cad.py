@@ -65,7 +65,7 @@ def _geometry(path: Path) -> Any:
         raise ReadError(f"{path} has no solids; export solids, not surfaces")
     if found < written:
         raise ReadError(
-            f"{path} holds {written} solids, of which the CAD kernel reads {found}: they are not in one assembly; "
+            f"{path} has {written} solids, but the CAD kernel reads {found}: they are not in one assembly; "
             "export them as one"
         )
     return geometry

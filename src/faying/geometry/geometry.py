@@ -265,7 +265,7 @@ def _label_pieces(
                 area += listed[number].mass
         if not np.isclose(area, mark.face.mass, rtol=1e-4):
             raise InputError(
-                f"face {mark.name!r} of part {mark.part!r} ({mark.face.mass:.6g} mm2) comes out as {area:.6g} mm2 "
+                f"face {mark.name!r} of part {mark.part!r} ({mark.face.mass:.6g} mm2) has {area:.6g} mm2 "
                 "where the parts touch; do they overlap? Else split it in the CAD program where they meet"
             )
 

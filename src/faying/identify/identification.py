@@ -354,7 +354,7 @@ def mixed(found: Mapping[str, Identification], prior: Mapping[str, float], *, se
     if any(_data(one) != _data(best) for one in found.values()):
         text = (
             "The laws were not compared on the same measured numbers, since not every law has an answer for each of "
-            "them: their evidences say nothing of which is better."
+            "them: their evidences do not show which is better."
         )
         notes = (Note(code="evidence", text=text), *notes)
     return replace(

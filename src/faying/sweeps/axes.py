@@ -61,7 +61,7 @@ def axis_of(text: str) -> Axis:
         known = ", ".join(
             (*OWN, "bolt.NAME.preload", "joint.NAME.stiffness", *forms, MODEL, "law.NAME (a parameter of the law)")
         )
-        raise InputError(f"--set {key}: a sweep varies {known};  anything else needs a study of its own")
+        raise InputError(f"--set {key}: a sweep varies {known}; anything else needs a study of its own")
     unit = parameter.unit if parameter.is_number else ""
     words = given.split(":")
     if len(words) in (3, 4):

@@ -132,8 +132,7 @@ def _note_solid(table: Table, part: str) -> None:
         table.data.pop(key)
     if "diameter" in table.data and "torque" not in table.data:
         table.faults.add(
-            f"{table.where}.diameter goes only with torque here, since the part {part!r} has a shank of its own; leave "
-            "it out"
+            f"{table.where}.diameter is for torque only, since the part {part!r} has a shank of its own; leave it out"
         )
 
 

@@ -68,7 +68,7 @@ MATERIAL: Declared = {
     "friction": within(0, MOST_FRICTION, "Static coefficient of friction, for the contact law."),
     "conductivity": quantity("W/(m*K)", "Thermal conductivity; gives the conductance of joints."),
     "resistivity": quantity("ohm*m", "Electrical resistivity; gives the conductance of joints."),
-    "bearing_limit": quantity("Pa", "Pressure that it bears under a bolt head (p_G of VDI 2230)."),
+    "bearing_limit": quantity("Pa", "Allowable pressure under a bolt head (p_G of VDI 2230)."),
     "expansion": quantity(
         "1/K", "Coefficient of linear thermal expansion; a load that changes temperatures needs it.", positive=False
     ),
