@@ -56,6 +56,8 @@ PLACES = {
 }
 # a message may say that a file is no longer there
 IN_MESSAGES = PLACES | {p: PRIVATE[p] for p in (r"grown together", r"closed laws?", r"that which", r"lies? off")}
+# "x is no mode" is read twice; there may be no mode, and a file that is no longer there
+IN_MESSAGES[r"(?<!here )\b(?:is|are|was|were) no (?!longer)"] = "is not a"
 # a decimal without its zero: .31, -.4, (.5; not 1.5, ".3f", [.., x.5 or the end of a range 1..5
 DECIMAL = re.compile(r"(?<![\w.)\]/*:}\\])(?<!:[-+<>^ ,])\.(?=\d)(?!\d+[fgdeE%](?![-+\d]))")
 
@@ -205,6 +207,20 @@ def test_messages_have_no_private_words_and_no_path_of_a_machine():
 )
 def test_the_lint_finds_what_it_is_for(text, said):
     assert [message.split(":")[0] for _, message in found(PRIVATE | HISTORY | PLACES, text)] == [said]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("type 5, which is no mode", "'is no '"),
+        ("3 lines are no numbers", "'are no '"),
+        ("there is no mode", None),
+        ("There are no modes below", None),
+        ("the file is no longer there", None),
+    ],
+)
+def test_a_message_says_what_is_not_so_in_the_common_order(text, said):
+    assert [message.split(":")[0] for _, message in found(IN_MESSAGES, text)] == ([said] if said else [])
 
 
 SENTENCE = " ".join(["word"] * 16)
