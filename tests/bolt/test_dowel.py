@@ -12,6 +12,8 @@ import faying
 from faying.bolt.dowel import ORDER, pin_stiffness
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
+from faying.fe.mesh import Mesh
+from faying.fe.sides import sides_on
 from faying.geometry.geometry import mesh_step
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
@@ -293,6 +295,44 @@ def test_dowels_are_as_stiff_as_pins_that_are_meshed(mesh, tmp_path):
     theirs = sheared(solid, (merge.T @ K @ merge).tocsr(), ("lower", "upper"), tied, column)
     assert np.all(ours < theirs)
     assert ours == pytest.approx(theirs, rel=0.05)
+
+
+def rings(layers, around=16):
+    """Two rings of bricks, one on the other: 8 mm inside, 24 mm outside, 10 mm thick."""
+    angle = 2 * pi * np.arange(around) / around
+    points, parts, faces = [], {}, {}
+    for name, low in (("lower", -DEEP), ("upper", 0.0)):
+        at = sum(map(len, points))
+        heights = np.linspace(low, low + DEEP, layers + 1)
+        points.append([(r * np.cos(a), r * np.sin(a), z) for z in heights for r in (4e-3, 12e-3) for a in angle])
+        index = at + np.arange(2 * around * (layers + 1)).reshape(layers + 1, 2, around)
+        turned = np.roll(index, -1, axis=2)
+        inner, outer = (index[:, k] for k in (0, 1)), (turned[:, k] for k in (0, 1))
+        (a, b), (d, c) = inner, outer
+        cells = np.stack([a[:-1], b[:-1], c[:-1], d[:-1], a[1:], b[1:], c[1:], d[1:]], axis=-1).reshape(-1, 8)
+        parts[name] = (cells,)
+        flat = {f"{name}.pin": np.unique(index[:, 0]), f"{name}.joint": np.unique(index[-1 if low < 0 else 0])}
+        faces |= {face: sides_on(nodes, (cells,), 2 * 2 * around * (layers + 1)) for face, nodes in flat.items()}
+    owner = {face: face.partition(".")[0] for face in faces}
+    return Mesh(points=np.concatenate(points), parts=parts, faces=faces, face_part=owner)
+
+
+@pytest.mark.parametrize(("layers", "degree"), [(1, 1), (2, 3), (4, ORDER)])
+def test_a_coarse_hole_has_a_lower_degree_and_a_note(layers, degree):
+    """Two points over the depth of a brick; whatever the degree, rigid motions are free and slide is that of it."""
+    mesh = rings(layers)
+    pin = faying.Dowel("pin", ("lower.pin", "upper.pin"), material=STEEL)
+    fitted = pin.fitted(mesh)
+    assert [wall.order for wall in fitted.walls] == [degree, degree]
+    motions = rigid_motions(mesh.points)
+    assert np.abs(fitted.stiffness @ (motions / np.abs(motions).max(axis=0))).max() < 1e-8 * fitted.beam.max()
+    slid = np.zeros_like(mesh.points)
+    slid[mesh.part_nodes("upper"), 1] = 1.0
+    assert slid.ravel() @ (fitted.stiffness @ slid.ravel()) == pytest.approx(1 / energy(DEEP, degree, STEEL), rel=1e-6)
+    notes = faying.Structure(mesh, STEEL, [joint(mesh)], dowels=[pin]).notes
+    said = [note.text for note in notes if note.code == "dowel-mesh"]
+    assert len(said) == (degree < ORDER)
+    assert all(f"pressures of degree {degree} over its depth" in text for text in said)
 
 
 @pytest.mark.parametrize(

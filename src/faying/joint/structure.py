@@ -259,10 +259,11 @@ class Structure(Summary):
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What the mesh left out, how good its elements are, and what was chosen for the bolts."""
+        """What the mesh left out, how good its elements are, and what was chosen for bolts and dowels."""
         bolts = [note for bolt in self.fitted_bolts if isinstance(bolt, FittedBolt) for note in bolt.notes]
         joints = [note for joint in self.joints for note in joint.notes]
-        return (*self.mesh.notes, *joints, *quality(self.mesh).notes, *bolts)
+        dowels = [note for dowel in self.fitted_dowels for note in dowel.notes]
+        return (*self.mesh.notes, *joints, *quality(self.mesh).notes, *bolts, *dowels)
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading and what the structure consists of."""
