@@ -22,16 +22,14 @@ from faying.text import json_text
     metavar="STUDY.toml",
     help="Study with surface, law and materials; with --pressure solve also with bolts.",
 )
-@click.option(
-    "--joint", metavar="NAME", help="Which of the study's joints; else the one with these faces, or the only one."
-)
+@click.option("--joint", metavar="NAME", help="Joint of the study; else the one with these faces, or the only one.")
 @click.option(
     "--pressure",
     required=True,
     metavar="FILE|VALUE|solve",
     help='CSV with the heading "node,pressure [MPa]", or "5 MPa", or solve.',
 )
-@click.option("--preload", metavar="FORCE", help='With solve: which of the study\'s preloads, such as "8 kN".')
+@click.option("--preload", metavar="FORCE", help='With --pressure solve: preload of the study, such as "8 kN".')
 @click.option(
     "--tolerance", metavar="LENGTH", help="Greatest distance between the faces (default: 1 % of the model's size)."
 )
@@ -63,10 +61,15 @@ from faying.text import json_text
 )
 @click.option("--mass", type=click.Path(path_type=Path), help="With a .mtx: file of the mass matrix.")
 @click.option("--dofs", type=click.Path(path_type=Path), help='With a .mtx: "node direction" of each row.')
-@click.option("--stiffness-unit", metavar="UNIT", help='Of the matrices, such as "N/mm".')
-@click.option("--mass-unit", metavar="UNIT", help='Of the matrices, such as "t".')
+@click.option("--stiffness-unit", metavar="UNIT", help='Unit of the stiffness, such as "N/mm".')
+@click.option("--mass-unit", metavar="UNIT", help='Unit of the mass, such as "t".')
 @click.option(
-    "--modes", "count", type=click.IntRange(1, 10_000), default=10, show_default=True, help="With --matrices: how many."
+    "--modes",
+    "count",
+    type=click.IntRange(1, 10_000),
+    default=10,
+    show_default=True,
+    help="With --matrices: number of modes.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 def command(

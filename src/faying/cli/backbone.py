@@ -17,11 +17,11 @@ from faying.text import json_text
 @click.option(
     "--amplitude", metavar="FIRST:LAST", help='Accelerations, for example "0.1 m/s^2:60 m/s^2" [0.1 to 100 m/s^2].'
 )
-@click.option("--at", metavar="POINT", help='Where, for example "10,0,5 mm" [where the mode moves most].')
-@click.option("--friction", metavar="MU[,MU]", help="Of all joints; several give several curves [that of the joints].")
 @click.option(
-    "--law", metavar="LAW[,LAW]", help="Contact law of all joints; several give several curves [that of the study]."
+    "--at", metavar="POINT", help='Point of the acceleration, for example "10,0,5 mm" [where the mode moves most].'
 )
+@click.option("--friction", metavar="MU[,MU]", help="Friction of all joints, a curve for each [that of the joints].")
+@click.option("--law", metavar="LAW[,LAW]", help="Contact law of all joints, a curve for each [that of the study].")
 @click.option(
     "--preload", "preloads", multiple=True, help='One of the study, for example "8 kN" [the greatest], or all.'
 )

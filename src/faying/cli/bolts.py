@@ -10,7 +10,7 @@ from faying.cli.progress import Form, Shown, progress_options
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--preload", metavar="FORCE", help='Which of the study\'s preloads, such as "8 kN" (default: greatest).')
+@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
 @click.option("--html", "page", type=click.Path(path_type=Path), help="Write the sheets as a page, with all formulas.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 @progress_options

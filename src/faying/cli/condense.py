@@ -17,8 +17,8 @@ NUMBER = click.IntRange(1, 99_999_999)  # eight digits, the field of a bulk data
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--joint", metavar="NAME", help="Which of the study's joints; the only one where left out.")
-@click.option("--preload", metavar="FORCE", help='Which of the study\'s preloads, such as "8 kN" (default: greatest).')
+@click.option("--joint", metavar="NAME", help="Joint of the study; the only one where left out.")
+@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
 @click.option("--point-a", metavar="POINT", help='Point of the first face, "0 mm; 10 mm; 5 mm" (default: its centre).')
 @click.option("--point-b", metavar="POINT", help="Point of the second face.")
 @click.option("--to", "solver", type=click.Choice(CONDENSED), help="The solver to write for.")

@@ -9,7 +9,7 @@ from faying.cli.progress import Form, Shown, progress_options
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--preload", metavar="FORCE", help='Which of the study\'s preloads, such as "8 kN" (default: greatest).')
+@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
 @click.option("--no-modes", is_flag=True, help="Leave out the modes about each loaded state.")
 @click.option("--intervals", is_flag=True, help="Find 90 % intervals over the scatter of preload and friction.")
 @click.option("--out", type=click.Path(path_type=Path), help="Write all numbers and pressure maps as NetCDF (.nc).")

@@ -16,16 +16,16 @@ from faying.text import json_text
     help="In place of a study: .mtx, .npz, .sti of CalculiX, or DMIG of Nastran.",
 )
 @click.option("--mass", type=click.Path(path_type=Path), help="Mass matrix, where the file of --stiffness has none.")
-@click.option("--stiffness-unit", default="N/m", show_default=True, help="Of the entries of the stiffness.")
-@click.option("--mass-unit", default="kg", show_default=True, help="Of the entries of the mass.")
+@click.option("--stiffness-unit", default="N/m", show_default=True, help="Unit of the stiffness entries.")
+@click.option("--mass-unit", default="kg", show_default=True, help="Unit of the mass entries.")
 @click.option(
     "--count", type=click.IntRange(1, 10_000), default=20, show_default=True, help="Modes, rigid motions among them."
 )
-@click.option("--shift", metavar="FREQUENCY", help='Of the shift of the spectrum, for example "100 Hz" [found].')
+@click.option("--shift", metavar="FREQUENCY", help='Frequency of the spectral shift, for example "100 Hz" [found].')
 @click.option(
     "--points",
     type=click.Path(path_type=Path),
-    help="With --stiffness and --mpi: x y z [m] of each node, whose unknowns follow each other in the matrices.",
+    help="With --stiffness and --mpi: x y z [m] of each node, in the order of the matrices, three unknowns a node.",
 )
 @click.option(
     "--mpi",

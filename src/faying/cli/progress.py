@@ -27,7 +27,7 @@ def progress_options(command: Callable[..., Any]) -> Callable[..., Any]:
     wanted = click.option(
         "--progress",
         type=click.Choice(["bar", "lines", "json", "none"]),
-        help="What stderr shows of the work [bar on a terminal, else none].",
+        help="Progress on stderr [bar on a terminal, else none].",
     )
     verbose = click.option("-v", "--verbose", "progress", flag_value="lines", help="A line for each stage.")
     quiet = click.option("-q", "--quiet", "progress", flag_value="none", help="Show no progress.")

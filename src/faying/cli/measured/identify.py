@@ -11,8 +11,12 @@ from faying.text import json_text
 
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--leave-out", multiple=True, metavar="PRELOAD", help='Predicted and not used, for example "12 kN".')
-@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Of all random numbers.")
+@click.option(
+    "--leave-out", multiple=True, metavar="PRELOAD", help='Preload to predict and not to use, for example "12 kN".'
+)
+@click.option(
+    "--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Seed of the random numbers."
+)
 @click.option(
     "--count", type=click.IntRange(100, 1_000_000), default=1000, show_default=True, help="Samples of the posterior."
 )

@@ -14,7 +14,7 @@ from faying.text import json_text
 @click.option(
     "--samples", type=click.IntRange(8, 1_000_000), default=1024, show_default=True, help="Points of Sobol's sequence."
 )
-@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Of the points.")
+@click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Seed of the samples.")
 @click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option(

@@ -11,11 +11,13 @@ from faying.text import json_text
 
 @click.command()
 @click.argument("record", type=click.Path(path_type=Path))
-@click.option("--band", required=True, metavar="LOW:HIGH", help='Where the mode is alone, for example "150 Hz:180 Hz".')
-@click.option("--start", metavar="TIME", help='Of the free decay in a record, for example "0.02 s" [its beginning].')
+@click.option(
+    "--band", required=True, metavar="LOW:HIGH", help='Band with this mode alone, for example "150 Hz:180 Hz".'
+)
+@click.option("--start", metavar="TIME", help='Start of the free decay, for example "0.02 s" [of the record].')
 @click.option("--impulse", metavar="TEXT", help='Impulse of the hit, if RECORD is an FRF, for example "0.3 N s".')
 @click.option(
-    "--function", type=click.IntRange(1, 10_000), help="Which FRF of a universal file, from 1 [the only one]."
+    "--function", type=click.IntRange(1, 10_000), help="Number of the FRF in a universal file, from 1 [the only one]."
 )
 @click.option(
     "--cycles", type=click.IntRange(3, 10_000), default=20, show_default=True, help="Periods that give one point."

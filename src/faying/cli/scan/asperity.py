@@ -31,13 +31,15 @@ NEEDED = ("R", "h_a")
     "--displacement",
     multiple=True,
     metavar="LENGTH",
-    help="Of the plane from first touch; repeat for turning points, 0 at the end unloads.",
+    help="Displacement of the plane from first touch; repeat for turning points, 0 at the end unloads.",
 )
-@click.option("--force", multiple=True, metavar="FORCE", help="Of the plane, in place of the displacement.")
+@click.option("--force", multiple=True, metavar="FORCE", help="Force on the plane, in place of the displacement.")
 @click.option("--material", default="45 steel", show_default=True, help="Cap and substrate: a name of the catalogue.")
 @click.option("--E", "E", metavar="STRESS", help="Young's modulus of the cap.")
 @click.option("--nu", type=float, help="Poisson's ratio of both.")
-@click.option("--yield-strength", metavar="STRESS", help="Of the cap, and of the substrate unless it has its own.")
+@click.option(
+    "--yield-strength", metavar="STRESS", help="Yield strength of the cap, and of the substrate unless it has its own."
+)
 @click.option("--hardening", type=float, default=0.0, show_default=True, help="Tangent modulus over E.")
 @click.option(
     "--substrate",

@@ -39,7 +39,9 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
     metavar="NAME=VALUE",
     help='Any parameter of the model, for example --set cutoff=0.01 or --set "sigma=0.8 um".',
 )
-@click.option("--material", default=None, help='Of the face with the scan, from the catalogue, for example "45 steel".')
+@click.option(
+    "--material", default=None, help='Material of the scanned face, from the catalogue, for example "45 steel".'
+)
 @click.option(
     "--against",
     default="same",
@@ -51,7 +53,9 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
 @click.option("--hardness", metavar="STRESS", help="Hardness.")
 @click.option("--yield-strength", metavar="STRESS", help="Yield strength; hardness is 2.8 times it where not given.")
 @click.option("--friction", type=float, help="Static friction coefficient.")
-@click.option("--conductivity", metavar="W/(m K)", help='Of heat, for --conductance, for example "50 W/(m K)".')
+@click.option(
+    "--conductivity", metavar="W/(m K)", help='Thermal conductivity, for --conductance, for example "50 W/(m K)".'
+)
 @click.option(
     "--pressure",
     metavar="FROM:TO[:POINTS]",
@@ -60,8 +64,8 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
 @click.option("--scan", type=click.Path(path_type=Path), help="A scan: D, G, moments and area come from it.")
 @click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
-@click.option("--size", metavar="LENGTHS", help='Of a scan whose file states none, for example "4 mm x 3 mm".')
-@click.option("--spacing", metavar="LENGTHS", help='Of its points, in place of --size, for example "5 um".')
+@click.option("--size", metavar="LENGTHS", help='Size of a scan whose file states none, for example "4 mm x 3 mm".')
+@click.option("--spacing", metavar="LENGTHS", help='Distance of its points, in place of --size, for example "5 um".')
 @click.option(
     "--counter",
     metavar="FILE|same|smooth",
@@ -76,9 +80,7 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
     type=click.Path(dir_okay=False),
     help="Picture of where the scan touches at the last pressure; with halfspace among --models.",
 )
-@click.option(
-    "--conductance", is_flag=True, help="Also the conductance of heat h that goes with k_n, clean metal in vacuum."
-)
+@click.option("--conductance", is_flag=True, help="Also the thermal conductance h from k_n, for clean metal in vacuum.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--csv", "csv_file", type=click.Path(dir_okay=False), help="Write all columns to a CSV file.")
 @click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")

@@ -17,8 +17,8 @@ from faying.text import json_text
     "--degree", type=click.IntRange(0, 8), default=1, show_default=True, help="Form removed: polynomial degree."
 )
 @click.option("--keep-spikes", is_flag=True, help="Leave single outlying points in.")
-@click.option("--size", metavar="LENGTHS", help='Of a scan whose file states none, for example "4 mm x 3 mm".')
-@click.option("--spacing", metavar="LENGTHS", help='Of its points, in place of --size, for example "5 um".')
+@click.option("--size", metavar="LENGTHS", help='Size of a scan whose file states none, for example "4 mm x 3 mm".')
+@click.option("--spacing", metavar="LENGTHS", help='Distance of its points, in place of --size, for example "5 um".')
 @click.option("--self-test", "test", is_flag=True, help="Correct for bias by synthetic surfaces made like this one.")
 @click.option("--cross-check", "check", is_flag=True, help="Compare with what other installed readers make of FILE.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
