@@ -167,10 +167,10 @@ def test_the_published_frequencies_lie_in_what_is_predicted_before_any_test(fold
 @needs_data
 @pytest.mark.slow
 def test_levels_of_three_bending_modes_are_those_of_harmonic_balance(folder):
-    """Half a per cent of a damping up to 0.3 %, 5 % up to 3 %; the frequency to a thousandth up to a damping of 1.2 %.
+    """Half a per cent of a damping up to 0.3 %, 2 % above; the frequency to a thousandth up to a damping of 2.5 %.
 
-    Above it the quick frequency is up to 6e-3 too low (docs/backbone.md). A curve that ends where other modes join has
-    no mode of its own near its end.
+    The stated error covers every level, also where mode 5 joins mode 3 at twice its frequency: there harmonic balance
+    has a third more damping. The frequency is within 2 % of its change from rest up to there.
     """
     import faying
 
@@ -181,17 +181,21 @@ def test_levels_of_three_bending_modes_are_those_of_harmonic_balance(folder):
     curves, picked = {}, {}
     for mode in (1, 3, 5):
         curve = faying.backbone(plan, mode, 0.05, (0.1, 100.0), rest_damping=0.0)
-        last = curve.acceleration[-1] * (0.6 if curve.code == "other-modes" else 1)
-        inside = np.flatnonzero((curve.damping > 2e-6) & (curve.damping < 0.03) & (curve.acceleration <= last))
-        curves[mode], picked[mode] = curve, inside[np.unique(np.linspace(0, len(inside) - 1, 6).astype(int))]
+        inside = np.flatnonzero(curve.damping > 2e-6)
+        number = 12 if curve.code == "other-modes" else 7
+        curves[mode], picked[mode] = curve, inside[np.unique(np.linspace(0, len(inside) - 1, number).astype(int))]
     levels = tuple(sorted({float(a) for mode, curve in curves.items() for a in curve.acceleration[picked[mode]]}))
     found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
     for mode, curve in curves.items():
         k = [levels.index(float(a)) for a in curve.acceleration[picked[mode]]]
         damping, frequency = curve.damping[picked[mode]], curve.frequency[picked[mode]]
-        ratio = found.level_slip[0, k, mode - 1] / damping - 1
-        assert np.all(np.abs(ratio) < np.where(damping < 3e-3, 5e-3, 0.05))
-        assert np.all(np.abs(ratio) < found.level_error[0, k, mode - 1] + 2e-3)
-        moved = found.level_frequencies[0, k, mode - 1] / frequency - 1
-        assert np.all(np.abs(moved) < np.where(damping < 0.012, 1e-3, 6e-3))
-    assert max(curve.damping[picked[mode]].max() for mode, curve in curves.items()) > 0.02
+        ratio = np.abs(found.level_slip[0, k, mode - 1] / damping - 1)
+        assert np.all(ratio < found.level_error[0, k, mode - 1] + 2e-3)
+        last = curve.acceleration[-1] * (0.55 if curve.code == "other-modes" else 1)
+        alone = curve.acceleration[picked[mode]] <= last
+        assert np.all(ratio[alone] < np.where(damping < 3e-3, 5e-3, 0.02)[alone])
+        moved = np.abs(found.level_frequencies[0, k, mode - 1] - frequency)[alone]
+        assert np.all(moved < 0.02 * np.abs(frequency - curve.linear_frequency)[alone] + 1e-7 * frequency[alone])
+        assert np.all((moved / frequency[alone])[damping[alone] < 0.025] < 1e-3)
+    assert curves[1].damping.max() > 0.035
+    assert curves[3].code == "other-modes"
