@@ -36,9 +36,13 @@ def printed(capsys, *words):
 
 
 def numbers(out):
-    """Cells of the row that begins with an estimator, a joint and its scan, or the like: after the first words."""
-    (row,) = [line for line in out.splitlines() if line.count(" .. ") == 3]
-    return re.split(r"\s{2,}", row.strip())
+    """Cells of the row of the table that has a band, whose columns are in two blocks with the names in both."""
+    lines = out.splitlines()
+    second = next(k for k, line in enumerate(lines) if " band " in line)
+    first = next(k for k in range(second, -1, -1) if "95 % interval" in lines[k])
+    rows = [re.split(r"\s{2,}", lines[k + 1].strip()) for k in (first, second)]
+    names = next(k for k, (one, other) in enumerate(zip(*rows, strict=False)) if one != other)
+    return [*rows[0], *rows[1][names:]]
 
 
 def test_run_law_and_surface_print_the_same(tmp_path, capsys):

@@ -6,6 +6,7 @@ from typing import Any
 import click
 
 from faying.cli.progress import Shown, progress_options
+from faying.output.terminal import folded
 from faying.text import json_text
 
 
@@ -116,7 +117,7 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
         balanced = {} if curve is None else {"curves": [curve.to_dict()]}
         click.echo(json_text(curves.to_dict() | balanced | {"files": files}))
         return
-    click.echo(f"{curves.summary()[0]}: frequency [Hz], damping [%]\n\n{table.text(rows(curves))}")
+    click.echo(folded(f"{curves.summary()[0]}: frequency [Hz], damping [%]\n\n{table.text(rows(curves))}"))
     if curve is not None:
         click.echo(f"\nmode {curve.mode}, harmonics 0 to {curve.harmonics}\n{table.text(balanced_rows(curves, curve))}")
     click.echo(f"\nwritten to {', '.join(files)}")
@@ -193,4 +194,4 @@ def text(curve: Any) -> str:
     if curve.measured is not None:
         parts += [f"measured points of {curve.measured_source}", table.text(table.backbone_measured(curve)), ""]
     parts += ["error bounds", table.text(table.backbone_bounds(curve)), ""]
-    return "\n".join([*parts, *(f"note: {line}" for line in curve.warnings)])
+    return folded("\n".join([*parts, *(f"note: {line}" for line in curve.warnings)]))

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from faying.output.terminal import folded
 from faying.text import json_text
 
 COLUMNS = 80
@@ -30,7 +31,7 @@ def command(study: Path, as_json: bool) -> int:
         notes = sum(one.level == "note" for one in found.findings)
         last = f"{count} fault{'s' * (count != 1)}, {notes} note{'s' * (notes != 1)}"
         lines.append(f"{last}; run it with: faying run {study}" if not count else f"{last}; the study cannot run")
-        click.echo("\n".join(lines))
+        click.echo(folded("\n".join(lines)))
     return 1 if found.faults else 0
 
 

@@ -6,6 +6,8 @@ from typing import Any
 
 import click
 
+from faying.output.terminal import WIDTH, folded
+from faying.output.terminal import text as aligned
 from faying.text import json_text
 
 WIDE = 18  # letters of a face's name in the table
@@ -96,7 +98,7 @@ def text(facts: Any, part: str | None) -> str:
         ]
         lines += [*_aligned(rows), ""]
     lines += [f"note: {note.text}" for note in facts.notes]
-    return "\n".join(lines).rstrip()
+    return folded("\n".join(lines).rstrip())
 
 
 def _row(face: Any, named: bool) -> list[str]:
@@ -106,7 +108,7 @@ def _row(face: Any, named: bool) -> list[str]:
     centre = " ".join(f"{1e3 * x:.4g}" for x in face.centre)
     radius = "" if face.radius is None else f"{1e3 * face.radius:.4g}"
     near = ",".join(map(str, face.neighbours))
-    near = near if len(near) <= 16 else near[:14].rpartition(",")[0] + ",.."
+    near = near if len(near) <= 10 else near[:8].rpartition(",")[0] + ",.."
     return [str(face.number), *([name] if named else []), kind, f"{1e6 * face.area:.4g}", normal, centre, radius, near]
 
 
@@ -119,7 +121,4 @@ def _direction(normal: Any) -> str:
 
 
 def _aligned(rows: list[list[str]]) -> list[str]:
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    return [
-        "  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
-    ]
+    return [f"  {line}".rstrip() for line in aligned(rows, left=range(len(rows[0])), width=WIDTH - 2).splitlines()]

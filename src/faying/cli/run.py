@@ -93,15 +93,18 @@ def text(result: Any) -> str:
     from faying.notes import FIRST_NOTES, TITLES, by_severity, grave
     from faying.output import answer, table
     from faying.output.sections import sections
+    from faying.output.terminal import wrapped
 
     head = (
         f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
-        f"{result.damping} loss in the joints\n"
+        f"{result.damping} loss in the joints"
     )
-    first, *others = (f"{section.above}\n{table.text(section.rows)}\n" for section in sections(result))
+    first, *others = (
+        "\n".join([*wrapped(section.above), table.text(section.rows), ""]) for section in sections(result)
+    )
     every = grave(result.notes)
     before = every[:FIRST_NOTES]
-    lines = [*_wrapped(answer.limit(result)), *_wrapped(answer.score_line(result))]
+    lines = [line for one in (answer.limit(result), answer.score_line(result)) if one for line in wrapped(one)]
     lines += [line for note in before for line in _item(note.text)]
     more = len(every) - len(before)
     lines += [f"  {more} more at the end"] if more > 0 else []
@@ -111,16 +114,11 @@ def text(result: Any) -> str:
         for line in (f"\n{TITLES[kind]}", *(part for note in some for part in _item(note.text)))
     ]
     hammer = [] if result.hammer is None else [line for text in result.hammer.notes for line in _item(text)]
-    return "\n".join([head, first, *([*lines, ""] if lines else []), *others, *notes, *hammer])
-
-
-def _wrapped(text: str, first: str = "", rest: str = "") -> list[str]:
-    """A text, 80 columns wide; first, rest: what stands before its first line and before the others."""
-    from textwrap import wrap
-
-    return wrap(text, 80, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False)
+    return "\n".join([*wrapped(head), "", first, *([*lines, ""] if lines else []), *others, *notes, *hammer])
 
 
 def _item(text: str) -> list[str]:
     """A note as an item of a list."""
-    return _wrapped(text, "- ", "  ")
+    from faying.output.terminal import wrapped
+
+    return wrapped(text, first="- ", rest="  ")

@@ -6,6 +6,7 @@ from faying.answer.bolt_sheet import BoltSheet, BoltSheets
 from faying.bolt.sheet import Quantity, Row
 from faying.output import page
 from faying.output.table import Rows, text
+from faying.output.terminal import folded
 from faying.units import show
 
 # units of the rows, with the factor from SI
@@ -70,7 +71,7 @@ def terminal(found: BoltSheets) -> str:
     for sheet in found.sheets:
         head = f"bolt {sheet.bolt!r}, {sheet.size}, at {show(found.load, 'N')}: {sheet.verdict}"
         parts += [head, "", text(rows_of(sheet), left=(0, 1, 5)), "", text(inputs_of(sheet), left=(0, 1)), ""]
-    return "\n".join([*parts, SCOPE])
+    return folded("\n".join([*parts, SCOPE]))
 
 
 def html(found: BoltSheets) -> str:

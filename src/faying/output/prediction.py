@@ -134,10 +134,10 @@ def text(found: Prediction) -> str:
             WIDTH,
         ),
         "\nwhat scatters\n" + _wrapped(scatter(found)),
-        "\nfrequencies, 5 % .. median .. 95 %\n" + _narrow(intervals(found)),
+        "\nfrequencies, 5 % .. median .. 95 %\n" + aligned(intervals(found)),
     ]
     if lines := losses(found):
-        parts.append("\nloss factors, 5 % .. median .. 95 %\n" + _narrow(lines))
+        parts.append("\nloss factors, 5 % .. median .. 95 %\n" + aligned(lines))
     if lines := slopes(found):
         parts.append("\nchange with preload, 5 % .. median .. 95 %\n" + aligned(lines))
     if lines := backbones(found):
@@ -149,17 +149,6 @@ def text(found: Prediction) -> str:
     last = load_text(found.loads[-1])
     parts.append(f"\nwhat makes the scatter at {last}\n" + _wrapped(rows) + "\n\n" + textwrap.fill(words, WIDTH) + "\n")
     return "\n".join([*parts, *(textwrap.fill(f"note: {note.text}", WIDTH) for note in found.notes)])
-
-
-def _narrow(rows: Rows, width: int = WIDTH) -> str:
-    """Columns in blocks that fit the width, the first column in each."""
-    widths = [max(len(row[k]) for row in rows) + 2 for k in range(len(rows[0]))]
-    blocks: list[list[int]] = [[]]
-    for k in range(1, len(rows[0])):
-        if blocks[-1] and widths[0] + sum(widths[i] for i in blocks[-1]) + widths[k] > width:
-            blocks.append([])
-        blocks[-1].append(k)
-    return "\n\n".join(aligned([[row[i] for i in (0, *block)] for row in rows]) for block in blocks)
 
 
 def _wrapped(rows: Rows, width: int = WIDTH) -> str:

@@ -1,6 +1,6 @@
 """The tables of a result as plain text, for terminals, and as rows, for the report."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from itertools import product
 from math import floor, log10
 from typing import Any
@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from faying.measured.ring_down import MeasuredBackbone
+from faying.output.terminal import text as text
 from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.result import preload_slope
@@ -55,7 +56,7 @@ def damping(result: Result) -> Rows:
     if result.levels is None or result.level_damping is None or result.level_low is None or result.level_high is None:
         return []
     assert result.level_frequencies is not None
-    rows: Rows = [["mode", *(f"{level:g} m/s2 [%]" for level in result.levels), "change of frequency [%]"]]
+    rows: Rows = [["mode", *(f"{level:g} m/s2 [%]" for level in result.levels), "change of f [%]"]]
     ends = (result.level_low[-1], result.level_damping[-1], result.level_high[-1])
     change = 100 * (result.level_frequencies[-1, -1] / result.frequencies[-1] - 1)
     for j in range(len(result.bonded)):
@@ -386,24 +387,6 @@ def fractals(result: Result) -> Rows:
             found.setdefault((surface["origin"], *cells, show(law["G"], "m", digits=3)), []).append(joint)
     rows = [[", ".join(joints), *cells] for cells, joints in found.items()]
     return [["joint", "scan", *FRACTAL, "G of the law"], *rows] if rows else []
-
-
-NAMED = ("preload", "source", "law", "joint", "part", "bolt", "method", "scan")  # heads of columns of names
-
-
-def text(rows: Rows, left: Sequence[int] | None = None) -> str:
-    """Align rows in columns: those of `left`, or the first two that hold names, to the left, others to the right."""
-    if not rows:
-        return ""
-    widths = np.max([[len(cell) for cell in row] for row in rows], axis=0)
-    lines = []
-    for row in rows:
-        cells = [
-            cell.ljust(w) if (k in left if left is not None else k < 2 and rows[0][k] in NAMED) else cell.rjust(w)
-            for k, (cell, w) in enumerate(zip(row, widths, strict=True))
-        ]
-        lines.append("  ".join(cells).rstrip())
-    return "\n".join(lines)
 
 
 def backbone(curve: Backbone) -> Rows:

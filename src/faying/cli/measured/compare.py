@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from faying.cli.measured.two_runs import show_two_runs
+from faying.output.terminal import folded
 from faying.text import json_text
 from faying.units import load_text
 
@@ -105,12 +106,10 @@ def command(
     if as_json:
         click.echo(json_text(comparison.to_dict() | {"files": [str(f) for f in files]}))
         return
-    click.echo(
-        f"{model.title} at {load_text(model.load)}; {len(comparison.point_map.nodes)} points of the test found a node\n"
-    )
-    click.echo(table.text(comparison.rows()))
-    for line in comparison.notes:
-        click.echo(f"note: {line}")
+    nodes = len(comparison.point_map.nodes)
+    head = f"{model.title} at {load_text(model.load)}; {nodes} points of the test found a node"
+    notes = (f"note: {line}" for line in comparison.notes)
+    click.echo(folded("\n".join([head, "", table.text(comparison.rows()), *notes])))
     if files:
         click.echo(f"\nwritten to {out}: {', '.join(f.name for f in files)}")
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from faying.cli.progress import Form, Shown, progress_options
+from faying.output.terminal import folded
 from faying.text import json_text
 
 
@@ -76,5 +77,5 @@ def command(
     if as_json:
         click.echo(json_text(found.to_dict() | {"files": [str(file) for file in files]}))
         return
-    click.echo(f"{plan.title}: {plan.test.source if plan.test else ''}\n\n{found.table()}")
+    click.echo(folded(f"{plan.title}: {plan.test.source if plan.test else ''}\n\n{found.table()}"))
     click.echo(f"\nwritten to {', '.join(map(str, files))}")

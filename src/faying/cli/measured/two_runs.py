@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from faying.output.terminal import folded
 from faying.text import json_text
 from faying.units import load_text
 
@@ -37,6 +38,6 @@ def show_two_runs(files: tuple[Path, Path], load: str | None, out: Path | None, 
         loads = " and ".join(dict.fromkeys(map(load_text, one.preloads)))
         click.echo(f"\n{loads}\n\n{table.text(one.mode_rows())}\n\n{table.text(one.joint_rows())}")
     for line in dict.fromkeys(line for one in found for line in one.notes):
-        click.echo(f"note: {line}")
+        click.echo(folded(f"note: {line}"))
     if written:
         click.echo(f"\nwritten to {', '.join(map(str, written))}")

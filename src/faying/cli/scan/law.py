@@ -6,6 +6,7 @@ from typing import Any
 import click
 
 from faying.cli.options import quantity
+from faying.output.terminal import folded
 from faying.text import json_text
 
 # what the table shows: heading and factor from SI
@@ -152,7 +153,7 @@ def command(
         about |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
         click.echo(json_text(document(law, response) | about))
         return
-    click.echo("\n".join([*heading(choice, mates), table(law, response, h)]))
+    click.echo(folded("\n".join([*heading(choice, mates), table(law, response, h)])))
 
 
 def conducted(law: Any, response: Any, pair: Any) -> Any:
@@ -178,7 +179,7 @@ def heading(choice: Any, mates: Any) -> list[str]:
         fit = mates.faces.fit
         if fit is not None:
             rows = [["method", *table.FRACTAL], [fit.method, *table.fractal(asdict(fit))]]
-            lines += [f"  {line}" for line in table.text(rows).splitlines()]
+            lines += [f"  {line}".rstrip() for line in table.text(rows, width=WIDTH - 2).splitlines()]
         lines += [line for text in mates.faces.warnings for line in wrap(f"note: {text}", WIDTH)]
     if choice.reason:
         lines += wrap(f"law: {choice.reason}", WIDTH)

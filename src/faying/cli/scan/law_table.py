@@ -10,6 +10,8 @@ import click
 
 from faying.cli.options import quantity
 from faying.cli.progress import Shown
+from faying.output import terminal
+from faying.output.terminal import folded
 from faying.text import json_text
 
 SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
@@ -49,7 +51,7 @@ def show(mates: Any, names: list[str] | None, pressures: Any, output: Output) ->
         tree = {"mates": mates.line} | document(inputs, comparison, heat)
         click.echo(json_text(tree))
         return
-    click.echo(f"mates: {mates.line}\n{table(inputs, comparison, heat)}")
+    click.echo(folded(f"mates: {mates.line}\n{table(inputs, comparison, heat)}"))
 
 
 def conducted(comparison: Any, pair: Any) -> dict[str, Any]:
@@ -104,10 +106,11 @@ def stability(mates: Any, names: list[str], given: Any, pressure: float, as_json
         return json_text(tree)
     lines = [f"mates: {mates.line}", ""]
     lines += [f"k_n at {pressure * 1e-6:.4g} MPa, and what multiplies it on parts of the scan", ""]
-    lines.append(f"{'law':<12}{'k_n [MPa/um]':>13}" + "".join(f"{name:>17}" for name in CASES[1:]))
+    lined = [["law", "k_n [MPa/um]", *CASES[1:], ""]]
     for one in found:
-        cells = "".join(f"{'-' if f != f else f'{f:.3g}':>17}" for f in (one.factors[name] for name in CASES[1:]))
-        lines.append(f"{one.label:<12}{one.k_n[CASES[0]] * 1e-12:>13.4g}{cells}{'' if one.stable else ' *'}")
+        cells = ["-" if f != f else f"{f:.3g}" for f in (one.factors[name] for name in CASES[1:])]
+        lined.append([one.label, f"{one.k_n[CASES[0]] * 1e-12:.4g}", *cells, "" if one.stable else "*"])
+    lines += terminal.text(lined).splitlines()
     if not all(one.stable for one in found):
         lines += [
             "",

@@ -4,6 +4,7 @@ from typing import Any
 
 import click
 
+from faying.output.terminal import folded
 from faying.text import json_text
 
 
@@ -31,7 +32,7 @@ def command(name: str | None, as_json: bool) -> None:
     if singles:
         lines += ["Models of one asperity, faying.contact.asperity", ""]
         lines += [f"{e['class']} ({e['name']}), {e['source']}\n  holds: {e['validity']}" for e in singles]
-    click.echo("\n".join(lines).rstrip())
+    click.echo(folded("\n".join(lines).rstrip()))
 
 
 def mark(parameter: dict[str, Any]) -> str:

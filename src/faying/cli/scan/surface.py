@@ -4,6 +4,7 @@ from typing import Any
 
 import click
 
+from faying.output.terminal import WIDTH, folded
 from faying.surface.estimators.table import METHODS
 from faying.text import json_text
 
@@ -137,9 +138,9 @@ def table(document: dict[str, Any]) -> str:
         rows.append([name, *tables.fractal(fit)])
         words += [f"  {name}: {word}" for word in fit["warnings"]]
     convention = next((f["convention"] for f in document["fits"].values() if "error" not in f), "")
-    lines += [f"  {line}" for line in tables.text(rows).splitlines()]
+    lines += [f"  {line}".rstrip() for line in tables.text(rows, width=WIDTH - 2).splitlines()]
     lines += ["", f"  {convention}", *words]
     for seen in document.get("cross_check", ()):
         verdict = {True: "agrees", False: "DIFFERS", None: "no opinion"}[seen["agrees"]]
         lines.append(f"  cross-check by {seen['reader']}: {verdict}: {seen['text']}")
-    return "\n".join(lines)
+    return folded("\n".join(lines))
