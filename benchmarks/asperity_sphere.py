@@ -7,13 +7,12 @@ and for tangent moduli of 1 and 2 % of E.
 import sys
 
 import numpy as np
-from faying.output.figures.save import save
 
 from faying import RIGID, ContactPair, Material, solve_asperity
 from faying.contact.asperity.jackson_green import JacksonGreen
 from faying.contact.asperity.kogut_etsion import KogutEtsion
 from faying.contact.asperity.unloading import EtsionKligermanKadin
-from faying.contact.figure import figure
+from faying.style import new_panels, save
 
 X = (1.5, 2, 3, 5.9, 6.1, 10, 20, 50, 76.8, 110)
 STEEL = Material(name="steel", E=100e9, nu=0.3, yield_strength=355e6, hardness=994e6)
@@ -22,7 +21,7 @@ STEEL = Material(name="steel", E=100e9, nu=0.3, yield_strength=355e6, hardness=9
 def main(path: str, elements: int = 32) -> None:
     pair = ContactPair(STEEL, RIGID)
     ke, jg = KogutEtsion(R=1.0, pair=pair), JacksonGreen(R=1.0, pair=pair)
-    fig = figure(3, width=4.4, height=3.6)
+    fig = new_panels(3, width=4.4, height=3.6)
     for hardening, style in ((0.0, "-"), (0.01, "--"), (0.02, ":")):
         rows = []
         for x in X:

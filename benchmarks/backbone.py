@@ -40,8 +40,8 @@ def basis_of(study: Study, mode: int) -> tuple[SlipBasis, Case]:
     preload = checked_preload(structure, structure.assembly(), study.forces(len(study.loads) - 1), order=study.order)
     springs = structure.springs(preload.pressures)
     modes = lowest_modes(
-        structure.joined(springs)[0],
-        structure.vibrating[1],
+        structure.coupled(springs)[0],
+        structure.dynamic_matrices[1],
         structure.rigid_count + MODES,
         shift_frequency=case.shift_frequency,
     )

@@ -22,7 +22,7 @@ ROOT = Path(__file__).parent.parent
 BINS = 5
 
 
-class Kept:
+class PartFile:
     """A model that remembers where it was evaluated: all truths share the points over the priors."""
 
     def __init__(self, model):
@@ -55,7 +55,7 @@ def main():
     began = time.process_time()
     stage = _Stage(None)
     ensemble = Ensemble.of(study, 8, given.seed)
-    model = Kept(StudyModel(ensemble, Reduced(ensemble, report=stage), stage))
+    model = PartFile(StudyModel(ensemble, Reduced(ensemble, report=stage), stage))
     print(f"bases: {time.process_time() - began:.0f} CPU s", flush=True)
     # the points over the priors come first: they settle which modes are the test's
     size = len(model.names)

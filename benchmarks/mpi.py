@@ -23,7 +23,7 @@ def row(size, processes, alone):
 
     layers, section = SIZES[size]
     mesh = structures.bar(layers=(layers, layers), section=section)
-    K, M = structures.joined(mesh)
+    K, M = structures.coupled(mesh)
     shift = structures.shift_frequency(mesh)
     found = modes_over_mpi(K, M, structures.MODES, shift_frequency=shift, processes=processes, points=mesh.points)
     cpu, peak = (", ".join(f"{value:.3g}" for value in values) for values in (found.cpu, found.peak / 1e9))

@@ -97,7 +97,7 @@ def ours(mesh):
     from functools import partial
 
     from faying.fe.elasticity import rigid_motions
-    from faying.numerics.nearby import refined_modes
+    from faying.numerics.modal_reanalysis import refined_modes
 
     return solved(mesh, partial(refined_modes, rigid=rigid_motions(mesh.points)))
 
@@ -109,9 +109,9 @@ def parts(mesh, alike=True):
     import numpy as np
 
     from faying.fe.elasticity import rigid_motions
-    from faying.joint.frame import unknowns_of
+    from faying.joint.assembled_parts import unknowns_of
     from faying.numerics.by_parts import PartByPart
-    from faying.numerics.nearby import refined_modes
+    from faying.numerics.modal_reanalysis import refined_modes
 
     way = PartByPart(
         [unknowns_of(mesh.part_nodes(part)) for part in mesh.parts],

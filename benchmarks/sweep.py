@@ -24,15 +24,15 @@ OUTSIDE = ("surface.D=2.26:2.54:7", "surface.G='3e-11 m:8e-10 m:7:log'", "bolt.p
 
 def full(structure, laws, forces, count):
     """The same variant with the full matrices: frequencies of the complex modes."""
-    from faying.answer.run import SPARE_MODES
+    from faying.joint.modal import SPARE_MODES
     from faying.numerics.damped import damped_modes
     from faying.numerics.modes import lowest_modes
 
     joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
     variant = replace(structure, joints=joints)
     found = variant.assembly().solve(variant.loads @ forces)
-    K, loss = variant.joined(variant.springs(found.pressures))
-    M, still = variant.vibrating[1], variant.rigid.shape[1]
+    K, loss = variant.coupled(variant.springs(found.pressures))
+    M, still = variant.dynamic_matrices[1], variant.rigid.shape[1]
     modes = lowest_modes(K, M, still + count + SPARE_MODES, shift_frequency=variant.shift_frequency)
     return damped_modes(modes, K, M, loss, rigid=still, count=count).frequencies
 
@@ -45,9 +45,9 @@ def main():
     from faying.case.case import checked_mesh, structure_of, surfaces_of
     from faying.study import Study
     from faying.sweeps.axes import Grid, axis_of
-    from faying.sweeps.recipe import Recipe
     from faying.sweeps.sweep import evaluate
     from faying.sweeps.trainer import Trainer
+    from faying.sweeps.variant_builder import VariantBuilder
 
     plan = Study.read(ROOT / "examples/t-specimen/study.toml")
     edge, at_joint = EDGES[given.size]
@@ -55,7 +55,7 @@ def main():
     mesh, surfaces = checked_mesh(plan), surfaces_of(plan)
     pairs = tuple(tuple(plan.materials[plan.parts[mesh.face_part[f]]] for f in joint.faces) for joint in plan.joints)
     near, wide = (
-        Recipe(
+        VariantBuilder(
             design=Grid(study=plan, surfaces=surfaces, axes=tuple(axis_of(t.replace("'", "")) for t in texts)),
             pairs=pairs,
         )
@@ -65,7 +65,7 @@ def main():
     structure = structure_of(plan, mesh, surfaces)
 
     begin = clock()
-    structure.vibrating, structure.loads, structure.rigid  # noqa: B018
+    structure.dynamic_matrices, structure.loads, structure.rigid  # noqa: B018
     laws, forces, _ = near.laws(near.design.size // 2 + 5)
     full(structure, laws, forces, plan.modes.count)
     single = clock() - begin

@@ -2,11 +2,14 @@
 
 import ast
 import graphlib
+import importlib
+import importlib.util
 from pathlib import Path
 
 import pytest
 
-SOURCE = Path(__file__).parent.parent / "src" / "faying"
+ROOT = Path(__file__).parent.parent
+SOURCE = ROOT / "src" / "faying"
 
 # a room may import from rooms on earlier lines, and from itself; rooms on one line do not see each other
 ORDER = [
@@ -155,3 +158,51 @@ def test_every_class_has_a_name_of_its_own():
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
     ]
     assert {name for name in names if names.count(name) > 1} == TWICE
+
+
+# words that need their author; each has a word of the field
+PRIVATE_WORDS = {
+    "begun",
+    "Beyond",
+    "Corners",
+    "Frame",
+    "grips",
+    "held",
+    "Kept",
+    "led_on",
+    "NearbyModes",
+    "past_end",
+    "Recipe",
+    "Seen",
+    "settled",
+    "sprung",
+    "standing",
+    "stay",
+    "told",
+    "upheld",
+    "vibrating",
+    "walked",
+    "Witness",
+    "worn",
+}
+
+
+def test_no_name_is_a_word_that_needs_its_author():
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.FunctionDef | ast.ClassDef):
+                assert node.name.lstrip("_") not in PRIVATE_WORDS, f"{path}: {node.name}"
+
+
+def test_what_benchmarks_and_examples_import_is_there():
+    for folder in ("benchmarks", "examples", "docs"):
+        for path in (ROOT / folder).rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text())):
+                if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "faying":
+                    module = importlib.import_module(node.module)
+                    missing = [one.name for one in node.names if not _has(module, one.name)]
+                    assert not missing, f"{path}, line {node.lineno}: {node.module} has no {', '.join(missing)}"
+
+
+def _has(module, name):
+    return hasattr(module, name) or importlib.util.find_spec(f"{module.__name__}.{name}") is not None

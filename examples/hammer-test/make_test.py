@@ -56,8 +56,8 @@ def hammered() -> LoadedStructure:
     )
     structure = build(study)
     preload = tighten(structure, structure.assembly(), [PRELOAD])
-    stiffness, loss = structure.joined(structure.springs(preload.pressures))
-    mass = structure.vibrating[1]
+    stiffness, loss = structure.coupled(structure.springs(preload.pressures))
+    mass = structure.dynamic_matrices[1]
     modes = lowest_modes(stiffness, mass, 40, shift_frequency=structure.shift_frequency)
     damped = damped_modes(modes, stiffness, mass, LOSS * loss, rigid=6, count=30)
     return LoadedStructure(

@@ -120,11 +120,11 @@ def test_the_table_of_laws_has_shares_reach_and_both_answers(default, closed):
     assert default.alternative_reach[1] == pytest.approx(closed.laws[0]["greatest_pressure [Pa]"])
     assert default.alternative_outside_share[1] == pytest.approx(closed.outside_share, abs=1e-6)
     past = default.pressure > default.alternative_reach[0]
-    assert default.alternative_beyond_share[0] == pytest.approx(
+    assert default.alternative_above_range_share[0] == pytest.approx(
         past @ default.weights / default.weights.sum(), abs=0.05
     )
-    assert np.all(default.alternative_beyond_frequencies >= default.alternative_frequencies * (1 - 1e-9))
-    assert np.all(default.alternative_beyond_share[1] == 0)
+    assert np.all(default.alternative_above_range_frequencies >= default.alternative_frequencies * (1 - 1e-9))
+    assert np.all(default.alternative_above_range_share[1] == 0)
     assert len(head) == len(own) == len(jk) == len(gw)
 
 

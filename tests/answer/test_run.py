@@ -141,21 +141,23 @@ def test_names_that_do_not_fit_the_geometry_are_reported_together(study):
 
 
 def test_a_preload_that_the_law_covers_has_one_answer(result):
-    assert result.beyond_frequencies is None
+    assert result.above_range_frequencies is None
     assert not any(note.code.startswith("beyond-law") for note in result.notes)
 
 
 def test_a_preload_that_the_law_does_not_cover_has_two_answers(study):
     """Held below, bonded above; what goes on rising beyond the law lies between them."""
     found = run(pulled(study, 1e3, 5e5))
-    assert found.beyond_frequencies[0] == pytest.approx(found.frequencies[0], rel=1e-12)  # inside the law
-    assert np.all(found.beyond_frequencies[1] >= found.frequencies[1])
-    assert np.all(found.beyond_frequencies[1] <= found.bonded * (1 + found.beyond_loss_factors[1] ** 2) * (1 + 1e-4))
-    assert np.all(found.beyond_loss_factors[1] <= found.loss_factors[1].max())
+    assert found.above_range_frequencies[0] == pytest.approx(found.frequencies[0], rel=1e-12)  # inside the law
+    assert np.all(found.above_range_frequencies[1] >= found.frequencies[1])
+    assert np.all(
+        found.above_range_frequencies[1] <= found.bonded * (1 + found.above_range_loss_factors[1] ** 2) * (1 + 1e-4)
+    )
+    assert np.all(found.above_range_loss_factors[1] <= found.loss_factors[1].max())
     notes = {note.code: note for note in found.notes if note.code.startswith("beyond")}
     assert set(notes) == {"beyond-law", "beyond-law-matters"}
     assert all(note.load == 5e5 for note in notes.values())
-    change = found.beyond_frequencies[1] / found.frequencies[1] - 1
+    change = found.above_range_frequencies[1] / found.frequencies[1] - 1
     assert f"{change.max():.1%}" in notes["beyond-law-matters"].text
     assert "JK cannot answer" in notes["beyond-law-matters"].text
 
@@ -176,11 +178,11 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     from faying.case.engine import Reanalysis
     from faying.case.solve import solve
     from faying.joint import preload
-    from faying.numerics import nearby
+    from faying.numerics import modal_reanalysis
     from faying.numerics.modes import lowest_modes
 
     made = []
-    for module in (preload, nearby):
+    for module in (preload, modal_reanalysis):
         factorise = module.factorise_roughly
         monkeypatch.setattr(module, "factorise_roughly", lambda *a, f=factorise, **k: made.append(a[0]) or f(*a, **k))
     case = Case.of(study)
@@ -188,19 +190,19 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     structure = case.structure
     state = solve(case, 0, Reanalysis(case), Progress(0), ranges=False)
     assert sum(matrix.shape[0] == structure.mesh.unknowns for matrix in made) == count
-    K, _ = structure.joined(state.springs)
-    exact = lowest_modes(K, structure.vibrating[1], case.modal.mode_count, shift_frequency=case.shift_frequency)
+    K, _ = structure.coupled(state.springs)
+    exact = lowest_modes(K, structure.dynamic_matrices[1], case.modal.mode_count, shift_frequency=case.shift_frequency)
     elastic = slice(case.rigid_count, case.rigid_count + study.modes.count)
     assert state.modes.frequencies[elastic] == pytest.approx(exact.frequencies[elastic], rel=5e-9)
 
 
 def test_preloads_found_together_are_those_found_one_by_one(study, monkeypatch):
     from faying.case import preloads as module
-    from faying.case.preloads import Preloads, settled
+    from faying.case.preloads import Preloads, solved_preload
 
     case = Case.of(study)
     problem = case.structure.assembly()
-    wanted = [settled(case, k, problem) for k in range(2)]
+    wanted = [solved_preload(case, k, problem) for k in range(2)]
     together = Preloads(case)
     monkeypatch.setattr(module, "AT_ONCE", case.structure.mesh.unknowns)  # room for one of them
     apart = Preloads(case)
@@ -216,7 +218,7 @@ def test_preloads_found_together_are_those_found_one_by_one(study, monkeypatch):
 )
 def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
     """The springs beyond the law made stiffer by any factor: each frequency stays between held and bonded."""
-    from faying.case.beyond import bonded_beyond
+    from faying.case.above_range import bonded_above_range
     from faying.case.case import Case, Progress
     from faying.case.engine import Reanalysis
     from faying.case.solve import solve
@@ -230,10 +232,12 @@ def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
     past = springs.pressure > structure.joints[0].law.model.greatest_pressure
     assert 0 < past.mean() < 1
     stiffer = replace(springs, k_n=np.where(past, factor, 1) * springs.k_n, k_t=np.where(past, factor, 1) * springs.k_t)
-    K, _ = structure.joined([stiffer])
-    modes = lowest_modes(K, structure.vibrating[1], case.modal.mode_count, shift_frequency=case.shift_frequency)
+    K, _ = structure.coupled([stiffer])
+    modes = lowest_modes(K, structure.dynamic_matrices[1], case.modal.mode_count, shift_frequency=case.shift_frequency)
     held, found = state.modes.frequencies[6:10], modes.frequencies[6:10]
-    bonded = bonded_beyond(case, 5e5, [replace(springs, loss_n=0 * springs.k_n, loss_t=0 * springs.k_n)], state.damped)
+    bonded = bonded_above_range(
+        case, 5e5, [replace(springs, loss_n=0 * springs.k_n, loss_t=0 * springs.k_n)], state.damped
+    )
     assert np.all(found >= held * (1 - 1e-9))
     assert np.all(found <= bonded.frequencies * (1 + 1e-9))
 

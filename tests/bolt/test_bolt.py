@@ -190,7 +190,7 @@ def test_bolts_against_a_fixed_plate_in_closed_form():
     structure = plates(
         mesh, material=stiff, bolts=(bolt(head_mass=0.0, nut_mass=0.0),), supports=(Support(face="low.bottom"),)
     )
-    K, M = structure.vibrating
+    K, M = structure.dynamic_matrices
     modes = lowest_modes(K, M, 6, shift_frequency=100.0)
     fitted = structure.fitted_bolts[0]
     mass = 7800 * 0.08 * 0.04 * 0.01 + 7800 * pi / 4 * 8e-3**2 * fitted.length / 2

@@ -204,8 +204,8 @@ def test_slide_of_two_plates_has_the_frequency_of_their_masses_on_two_pins(mesh)
     """Pins a hundred thousand times softer than the plates, one of which is held and one slides, as rigid bodies."""
     pin = replace(STEEL, name="soft", E=STEEL.E / 1e5, density=1e-3)
     structure = doweled(mesh, pin, supports=HELD)
-    K = structure.joined(pressed(structure))[0]
-    found = lowest_modes(K, structure.vibrating[1], 3, shift_frequency=50.0).frequencies
+    K = structure.coupled(pressed(structure))[0]
+    found = lowest_modes(K, structure.dynamic_matrices[1], 3, shift_frequency=50.0).frequencies
     stiffness = 2 / energy(DEEP, ORDER, pin)
     slides = np.sqrt(stiffness / structure.part_masses[list(mesh.parts).index("upper")]) / (2 * pi)
     # the other motion turns about the normal of the plates: both pins are 18 mm from the middle
@@ -226,7 +226,7 @@ def test_pins_share_a_force_evenly_and_carry_it_from_part_to_part(mesh):
     nodes = mesh.face_nodes("upper.seat")
     pull[3 * nodes] = 1e3 / len(nodes)
     pull[structure.fixed] = 0.0
-    moved = factorise(structure.joined(pressed(structure))[0]).solve(pull)
+    moved = factorise(structure.coupled(pressed(structure))[0]).solve(pull)
     for fitted in structure.fitted_dowels:
         forces = fitted.forces(moved)
         assert forces.sum(axis=0) == pytest.approx(0.0, abs=1e-6)

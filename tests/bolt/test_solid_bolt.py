@@ -111,10 +111,10 @@ def test_vibration_has_the_whole_bolt(single):
     """Once tight, the structure is the mesh and its joints: nothing is left of how the bolt was pulled."""
     made = structure(single)
     found = tighten(made, made.assembly(), [5e3])
-    K, _ = made.joined(made.springs(found.pressures))
+    K, _ = made.coupled(made.springs(found.pressures))
     plain = made.matrices[0] + sum(s.stiffness() for s in made.springs(found.pressures))
     assert abs(K - plain).max() < 1e-12 * abs(plain).max()
-    assert abs(made.vibrating[1] - made.matrices[1]).max() == 0
+    assert abs(made.dynamic_matrices[1] - made.matrices[1]).max() == 0
 
 
 def test_bolts_in_turn_leave_what_presses_their_heads():

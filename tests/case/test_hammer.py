@@ -50,8 +50,8 @@ def solved(plan):
     coarse = replace(plan, geometry=replace(plan.geometry, size=2e-2, face_size={}))
     structure = build(coarse)
     preload = tighten(structure, structure.assembly(), [6e3])
-    stiffness, loss = structure.joined(structure.springs(preload.pressures))
-    mass = structure.vibrating[1]
+    stiffness, loss = structure.coupled(structure.springs(preload.pressures))
+    mass = structure.dynamic_matrices[1]
     modes = lowest_modes(stiffness, mass, 30, shift_frequency=structure.shift_frequency)
     damped = damped_modes(modes, stiffness, mass, loss, rigid=6, count=18)
     return LoadedStructure(

@@ -53,7 +53,7 @@ def test_an_ordinary_joint_has_an_answer_with_bounds(name, proof_share, tmp_path
     assert np.all(value["high"] <= value["bonded"] * (1 + 1e-6))
     assert np.all(value["high"][:, :3] > value["low"][:, :3] * (1 + 1e-4))  # a range, not a number written twice
     assert np.array(data["greatest_pressure"]["values"]).max() > 30e6  # where JK ends on this surface by half
-    assert data["beyond_share"]["values"] == [0.0, 0.0]
+    assert data["above_range_share"]["values"] == [0.0, 0.0]
     assert max(data["imbalance"]["values"]) < 1e-8
     found = np.array(data["bolt_numbers"]["proof_share"]["values"])[-1]
     assert found == pytest.approx(proof_share, rel=1e-2)  # the standard rounds its loads
@@ -66,10 +66,10 @@ def test_every_law_of_one_scan_has_its_row(tmp_path):
     rows = dict(zip(data["alternatives"], range(len(data["alternatives"])), strict=True))
     held, bonded = (
         np.array(data[key]["values"], dtype=float)[:, -1]
-        for key in ("alternative_frequencies", "alternative_beyond_frequencies")
+        for key in ("alternative_frequencies", "alternative_above_range_frequencies")
     )
     reach = np.array(data["alternative_reach"]["values"], dtype=float)
-    beyond = np.array(data["alternative_beyond_share"]["values"], dtype=float)[:, -1]
+    beyond = np.array(data["alternative_above_range_share"]["values"], dtype=float)[:, -1]
     silent = {name for name, row in rows.items() if np.isnan(held[row]).all()}
     assert silent == {"JS", "MB", "WK", "YK"}
     own = np.array(data["frequencies"]["values"])[-1]

@@ -79,8 +79,8 @@ def test_between_two_points():
 
 
 def both(structure, springs, count=12):
-    K, _ = structure.joined([springs])
-    full = lowest_modes(K, structure.vibrating[1], count, shift_frequency=structure.shift_frequency)
+    K, _ = structure.coupled([springs])
+    full = lowest_modes(K, structure.dynamic_matrices[1], count, shift_frequency=structure.shift_frequency)
     ties = {tie: condensed_modes(structure, [springs], 0, count, tie=tie) for tie in ("mean", "rigid")}
     return full.frequencies[6:], {tie: found.frequencies[6:] for tie, found in ties.items()}, full, ties
 
@@ -144,8 +144,8 @@ def test_supports_and_other_joints_stay():
         mesh=made, materials=dict.fromkeys(made.parts, STEEL), joints=joints, supports=(Support(face="p0.left"),)
     )
     springs = structure.springs([np.full(len(j.interface.weights), 1e6) for j in joints])
-    K, _ = structure.joined(springs)
-    full = lowest_modes(K, structure.vibrating[1], 5, shift_frequency=structure.shift_frequency).frequencies
+    K, _ = structure.coupled(springs)
+    full = lowest_modes(K, structure.dynamic_matrices[1], 5, shift_frequency=structure.shift_frequency).frequencies
     for number in (0, 1):
         mean = condensed_modes(structure, springs, number, 5, tie="mean").frequencies
         assert mean == pytest.approx(full, rel=0.01)

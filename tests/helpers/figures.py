@@ -33,7 +33,7 @@ from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
 from faying.result import Receptance, backbone_figure, difference_figure, load_cases_figure
-from faying.result.backbone import Witness
+from faying.result.backbone import QuasiStaticCheck
 from faying.result.difference import compare_runs
 from faying.result.result import MeasuredComparison
 from faying.study.keys.uncertain import Input
@@ -105,7 +105,7 @@ def curve():
     found = backbone_of(
         frequency=lambda a: 200 - 2 * np.log1p(a), damping=lambda a: 1e-3 * (1 + a), rest=1e-3, linear=200.0
     )
-    cycle = Witness(
+    cycle = QuasiStaticCheck(
         amplitude=points,
         acceleration=points,
         frequency=200 - 2.1 * np.log1p(points),
@@ -221,7 +221,14 @@ def swept(*texts):
     f = np.multiply.outer(1 + 0.01 * place, 100.0 * np.arange(1, 5))
     none = np.zeros(shape)
     given = {"loss_factors": 0 * f, "estimate": none, "greatest_pressure": none, "open_share": none}
-    given |= {"beyond_share": none, "reasons": {}, "tolerance": 1e-6, "unknowns": 1, "basis": (1, 1), "path": "s.nc"}
+    given |= {
+        "above_range_share": none,
+        "reasons": {},
+        "tolerance": 1e-6,
+        "unknowns": 1,
+        "basis": (1, 1),
+        "path": "s.nc",
+    }
     return Sweep(title="s", axes=axes, frequencies=f, **given)
 
 
@@ -249,7 +256,7 @@ def prediction():
         frequencies=f,
         loss_factors=np.full(f.shape, np.nan),
         open_share=np.zeros((128, 2)),
-        beyond_share=np.zeros((128, 2)),
+        above_range_share=np.zeros((128, 2)),
         paired=f[..., :2],
         test=np.array([[101.0, 249.0], [108.0, 300.0]]),
         test_source="test",

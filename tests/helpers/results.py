@@ -31,7 +31,7 @@ def small_result(loads=(2e3, 8e3), joints=("a", "b"), bolts=("left", "right"), *
         "total_k_n": per_joint,
         "total_k_t": per_joint,
         "outside_share": np.zeros(count),
-        "beyond_share": np.zeros(count),
+        "above_range_share": np.zeros(count),
         "bolt_forces": np.outer(loads, np.linspace(1, 0.75, len(bolts))),
         "imbalance": np.full(count, 1e-12),
         "newton_steps": np.full(count, 7),

@@ -76,7 +76,7 @@ def follower(study, values):
     ensemble = Ensemble.of(study, 8, 0).with_values(np.array(values))
     trainer = Trainer.of(study, ensemble, 1e-4, silent)
     shape, at = median_of(trainer.recipe.case(trainer.structure, ensemble.middle), study.backbone)
-    bare = replace(trainer.structure, frame=None)
+    bare = replace(trainer.structure, assembled=None)
     return Follower(structure=bare, recipe=trainer.recipe, choice=replace(study.backbone, at=at), shape=shape)
 
 

@@ -9,7 +9,7 @@ from scipy import stats
 import faying
 from faying.distribution import Distribution
 from faying.errors import InputError, ReadError
-from faying.identify.fit import Seen
+from faying.identify.fit import Identifiability
 from faying.identify.identification import Identification, mixed, weights_of
 from faying.identify.identification_figure import figure
 from faying.identify.identify import identify_model
@@ -126,7 +126,7 @@ def test_twins_are_found():
         low, _, high = found.quantiles()
         inside.append((low[:4] <= truth) & (truth <= high[:4]))
         covered.append((found.predicted[0, 2] <= test[2]) & (test[2] <= found.predicted[2, 2]))
-        told.append(found.told)
+        told.append(found.posterior_contraction)
         assert "not-told" in codes(found)
     assert np.all(np.sum(inside, axis=0) >= 8)
     assert np.sum(covered) >= 32
@@ -212,7 +212,7 @@ def test_the_result(chain):
     assert chain.used.sum() == 8
     assert chain.correlation == pytest.approx(np.corrcoef(chain.samples.T))
     assert chain.mean == pytest.approx(chain.samples.mean(axis=0))
-    assert chain.told == pytest.approx(chain.sd / [p.sd for p in chain.priors])
+    assert chain.posterior_contraction == pytest.approx(chain.sd / [p.sd for p in chain.priors])
     assert chain.quantiles((0.1, 0.9)).shape == (2, 6)
     assert chain.answered == chain.evaluations >= 256
     assert codes(chain) == ["not-told"]
@@ -232,8 +232,8 @@ def test_least_squares_and_what_the_test_sees(chain):
     assert np.all(np.diff(seen.values) <= 0)
     assert seen.vectors @ seen.vectors.T == pytest.approx(np.eye(4), abs=1e-10)
     assert abs(seen.vectors[-1, 3]) > 0.99
-    assert seen.told[-1] > 0.99
-    assert seen.told[0] < 0.1
+    assert seen.posterior_contraction[-1] > 0.99
+    assert seen.posterior_contraction[0] < 0.1
     assert seen.text.endswith("It does not identify unseen.")
     assert "contact.c" in seen.text.partition(". It")[0]
 
@@ -404,10 +404,10 @@ def test_the_same_seed_gives_the_same_numbers():
 
 
 def test_many_combinations_are_counted():
-    seen = Seen(names=tuple("abcdefg"), values=np.array([9.0, 8, 7, 6, 5, 0.1, 0.0]), vectors=np.eye(7))
+    seen = Identifiability(names=tuple("abcdefg"), values=np.array([9.0, 8, 7, 6, 5, 0.1, 0.0]), vectors=np.eye(7))
     assert seen.text == "The test identifies a; b; c; and 2 more combinations. It does not identify g; f."
     assert (
-        Seen(names=("a",), values=np.array([1.0]), vectors=np.eye(1)).text
+        Identifiability(names=("a",), values=np.array([1.0]), vectors=np.eye(1)).text
         == "The test identifies none of the parameters."
     )
 
@@ -472,7 +472,7 @@ def test_loss_factors_tell_what_frequencies_do_not(damped):
 
     without = identify_model(Undamped(), test, LOADS, leave_out=[2], count=COUNT)
     found = identify_model(DampedChain(), test, LOADS, leave_out=[2], count=COUNT, losses=Losses(values=losses))
-    assert without.told[3] > 0.85
+    assert without.posterior_contraction[3] > 0.85
     assert "not-told" in codes(without)
     low, high = found.quantiles((0.01, 0.99))[:, 3]
     assert low < 0.05 < high

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from faying.identify.identity import by_name, named, paired, settled
+from faying.identify.identity import by_name, named, paired, paired_modes
 
 
 def test_modes_that_change_their_order_keep_their_names():
@@ -25,7 +25,7 @@ def test_the_nearest_samples_say_which_modes_are_the_tests():
     near, far = [100.0, 201.0, 299.0], [150.0, 290.0, 420.0]
     frequencies = np.array([[near]] * 8 + [[far]] * 40 + [[[np.nan] * 3]])
     modes = np.array([[1.0, 2.0]] * 7 + [[1.0, 0.0]] + [[0.0, 1.0]] * 40 + [[np.nan, np.nan]])
-    names = settled(test, {"named": frequencies, "modes": modes})
+    names = paired_modes(test, {"named": frequencies, "modes": modes})
     assert names.tolist() == [1, 2]
     assert paired(frequencies, names)[-2].tolist() == [[290.0, 420.0]]
-    assert settled(test, {"named": frequencies[-1:], "modes": modes[-1:]}).tolist() == [-1, -1]
+    assert paired_modes(test, {"named": frequencies[-1:], "modes": modes[-1:]}).tolist() == [-1, -1]

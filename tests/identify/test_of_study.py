@@ -122,7 +122,7 @@ def test_ten_twins_of_another_mesh_law_and_form(tmp_path):
         low, _, high = dict(zip(found.names, found.quantiles().T, strict=True))["material.45 steel.E"]
         inside.append(low < truth["E"] < high)
         covered.append((measured[-1] > found.predicted[0, -1]) & (measured[-1] < found.predicted[2, -1]))
-        told.append(dict(zip(found.names, found.told, strict=True)))
+        told.append(dict(zip(found.names, found.posterior_contraction, strict=True)))
         unseen.append(any("bolt" in note.text for note in found.notes if note.code == "not-told"))
     assert sum(inside) >= 8
     assert sum(unseen) >= 8
@@ -133,7 +133,7 @@ def test_ten_twins_of_another_mesh_law_and_form(tmp_path):
 @pytest.mark.slow
 def test_what_the_test_sees_is_told_from_what_it_does_not(found):
     _, _, result = found
-    told = dict(zip(result.names, result.told, strict=True))
+    told = dict(zip(result.names, result.posterior_contraction, strict=True))
     assert told["joint.stiffness"] < 0.6
 
 
@@ -163,7 +163,7 @@ def blocks(tmp_path_factory):
 
 def test_the_example_gives_back_the_stiffness_that_it_was_made_with(blocks):
     out, result = blocks
-    told = dict(zip(result.names, result.told, strict=True))
+    told = dict(zip(result.names, result.posterior_contraction, strict=True))
     low, _, high = dict(zip(result.names, result.quantiles((0.02, 0.5, 0.98)).T, strict=True))["joint.stiffness"]
     assert low < 0.7 < high
     assert told["joint.stiffness"] < 0.4
@@ -209,7 +209,7 @@ def test_damping_of_a_test_tells_what_makes_the_loss(tmp_path):
     for losses in (None, tuple(map(tuple, loss.tolist()))):
         one = replace(study, test=replace(test, losses=losses))
         found = faying.identify(one, seed=1, count=300)
-        told.append(dict(zip(found.names, found.told, strict=True))["law.alpha"])
+        told.append(dict(zip(found.names, found.posterior_contraction, strict=True))["law.alpha"])
     low, high = dict(zip(found.names, found.quantiles((0.02, 0.98)).T, strict=True))["law.alpha"]
     assert told[0] > 0.8
     assert told[1] < 0.6

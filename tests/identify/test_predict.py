@@ -305,8 +305,8 @@ def test_samples_miss_full_solutions_by_less_than_is_said(plan):
             joints = tuple(replace(joint, law=law) for joint, law in zip(structure.joints, laws, strict=True))
             structure = replace(structure, materials=materials, joints=joints)
             pressures = structure.assembly().solve(structure.loads @ forces).pressures
-            K, loss = structure.joined(structure.springs(pressures))
-            M, rigid = structure.vibrating[1], structure.rigid_count
+            K, loss = structure.coupled(structure.springs(pressures))
+            M, rigid = structure.dynamic_matrices[1], structure.rigid_count
             modes = lowest_modes(K, M, rigid + 15, shift_frequency=structure.shift_frequency)
             full = damped_modes(modes, K, M, loss, rigid=rigid, count=model.count, tolerance=1e-9)
             error = np.abs(variant.frequencies / full.frequencies - 1).max()

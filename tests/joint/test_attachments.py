@@ -34,7 +34,7 @@ def structure(**changes):
 
 
 def modes(made, count=8):
-    K, M = made.vibrating
+    K, M = made.dynamic_matrices
     return lowest_modes(K, M, count, shift_frequency=made.shift_frequency)
 
 

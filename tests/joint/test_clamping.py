@@ -40,8 +40,8 @@ def clamped(mesh, bolts, *, k_n=1e16, materials=None):
         mesh=mesh, materials=materials or dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=bolts
     )
     springs = structure.springs([np.full(len(joint.interface.weights), 10e6)])
-    K, _ = structure.joined(springs)
-    modes = lowest_modes(K, structure.vibrating[1], 8, shift_frequency=structure.shift_frequency)
+    K, _ = structure.coupled(springs)
+    modes = lowest_modes(K, structure.dynamic_matrices[1], 8, shift_frequency=structure.shift_frequency)
     return structure, K, modes, springs, clamping(structure, K, modes, springs)
 
 
@@ -76,8 +76,8 @@ def test_a_compliance_is_wrong_by_the_square_of_the_residual(accuracy, monkeypat
     structure, K, _, springs, exact = sleeve({"low": SOFT, "high": HARD})
     share = np.linspace(0.05, 1, len(springs[0].k_n))
     uneven = [replace(s, k_n=s.k_n * share, k_t=s.k_t * share) for s in springs]
-    before = structure.joined(uneven)[0]
-    modes = lowest_modes(before, structure.vibrating[1], 8, shift_frequency=structure.shift_frequency)
+    before = structure.coupled(uneven)[0]
+    modes = lowest_modes(before, structure.dynamic_matrices[1], 8, shift_frequency=structure.shift_frequency)
     like = clamping(structure, before, modes, uneven).motions
     monkeypatch.setattr(module, "ACCURACY", accuracy)
     found = clamping(structure, K, modes, springs, like=like)
@@ -96,7 +96,7 @@ def test_forces_at_the_seats_divide_by_the_load_factor():
     """1 N that pulls the seats of the tight bolt apart: the bolt takes Phi of it, the joint loses the rest."""
     structure, K, _, springs, found = sleeve()
     bolt = structure.fitted_bolts[0]
-    M = structure.vibrating[1]
+    M = structure.dynamic_matrices[1]
     motion = np.zeros(K.shape[0])
     rigid = structure.rigid @ np.linalg.inv(structure.rigid.T @ structure.rigid) @ structure.rigid.T
     from scipy.sparse.linalg import splu
@@ -120,7 +120,7 @@ def test_what_embeds_takes_force_from_the_bolt():
     closing = 1e-6 * (1 + np.sin(1e3 * i.positions[:, 0]))
     from scipy.sparse.linalg import splu
 
-    M = structure.vibrating[1]
+    M = structure.dynamic_matrices[1]
     shifted = (K + 1e-9 * K.diagonal().mean() * M / M.diagonal().mean()).tocsc()
     pressed = i.forces(-springs[0].k_n * closing, np.zeros((len(closing), 2)))
     lost = -bolt.tension(splu(shifted).solve(pressed))
@@ -161,7 +161,7 @@ def under_rigid_seats(structure, stiffness, radius):
     left, place = np.unique(column, return_inverse=True)
     tie = csr_array((np.ones(n), (np.arange(n), place)), shape=(n, len(left)))
     K = tie.T @ (stiffness - structure.fitted_bolts[0].stiffness) @ tie
-    M = tie.T @ structure.vibrating[1] @ tie
+    M = tie.T @ structure.dynamic_matrices[1] @ tie
     force = np.zeros(len(left))
     force[place[ends]] = 1.0, -1.0
     motion = splu((K + 1e-8 * K.diagonal().mean() / M.diagonal().mean() * M).tocsc()).solve(force)
@@ -278,7 +278,7 @@ def meshed(**changes):
 
     made = with_solid_bolts(bolted(kind="hex8"), **changes)
     at = made.springs([np.full(len(j.interface.weights), 5e6) for j in made.joints])
-    K, M = made.joined(at)[0], made.vibrating[1]
+    K, M = made.coupled(at)[0], made.dynamic_matrices[1]
     modes = lowest_modes(K, M, 8, shift_frequency=made.shift_frequency)
     return made, K, at, clamping(made, K, modes, at)
 
@@ -294,7 +294,7 @@ def test_a_meshed_bolt_divides_between_itself_and_its_members():
     *_, other = meshed(at=(0.02, 0.02, 13e-3))
     assert other.members == pytest.approx(found.members, rel=1e-6)
     assert other.bolt == pytest.approx(found.bolt, rel=1e-5)
-    bolt, M = made.fitted_bolts[0], made.vibrating[1]
+    bolt, M = made.fitted_bolts[0], made.dynamic_matrices[1]
     from scipy.sparse.linalg import splu
 
     shifted = (K + 1e-10 * K.diagonal().mean() * M / M.diagonal().mean()).tocsc()

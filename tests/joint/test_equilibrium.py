@@ -28,9 +28,9 @@ class Dense(Equilibrium):
         start[::3] = -1e-6
         return start
 
-    def _direction(self, u, force, grips, accuracy):
+    def _direction(self, u, force, slip_states, accuracy):
         matrix = np.array(self.stiffness)
-        for trace, k_n, k_t in self._tangents(u, grips):
+        for trace, k_n, k_t in self._tangents(u, slip_states):
             for i in range(len(trace.weights)):
                 matrix[3 * i, 3 * i] += k_n[i]
                 matrix[3 * i + 1 : 3 * i + 3, 3 * i + 1 : 3 * i + 3] += k_t[i]

@@ -46,9 +46,9 @@ def shear(structure, found, friction):
 
 
 def test_below_the_limit_it_is_the_same_as_without_friction():
-    sticks, grips = held(None), held(MU)
+    sticks, slip_states = held(None), held(MU)
     a = sticks.assembly().solve(pushed(sticks, 2e3, 100.0))
-    b = grips.assembly().solve(pushed(grips, 2e3, 100.0))
+    b = slip_states.assembly().solve(pushed(slip_states, 2e3, 100.0))
     assert b.slipping == (0.0,)
     assert b.displacement == pytest.approx(a.displacement, rel=1e-6, abs=1e-16)
 
@@ -98,14 +98,17 @@ def test_what_slipped_does_not_come_back_by_itself():
 @given(st.floats(-1, 1), st.floats(-1, 1), st.floats(1e-6, 2.0))
 def test_the_tangent_is_the_derivative_of_the_shear(x: float, y: float, limit: float):
     slip, anchor = 1e-6 * np.array([[x, y]]), np.array([[2e-7, -1e-7]])
-    grip = StickSlip(k_t=np.array([1e12]), limit=1e6 * np.array([limit]), anchor=anchor)
+    slip_state = StickSlip(k_t=np.array([1e12]), limit=1e6 * np.array([limit]), anchor=anchor)
     size = 1e12 * np.linalg.norm(slip - anchor)
     if abs(size - 1e6 * limit) < 1e3:
         return  # at the edge of slip there is no derivative
     step = 1e-11
-    columns = [(grip.shear(slip + step * axis) - grip.shear(slip - step * axis))[0] / (2 * step) for axis in np.eye(2)]
-    assert grip.tangent(slip)[0] == pytest.approx(np.stack(columns, axis=1), rel=1e-4, abs=1e12 * 1e-4)
-    assert np.linalg.norm(grip.shear(slip)) <= 1e6 * limit * (1 + 1e-12)
+    columns = [
+        (slip_state.shear(slip + step * axis) - slip_state.shear(slip - step * axis))[0] / (2 * step)
+        for axis in np.eye(2)
+    ]
+    assert slip_state.tangent(slip)[0] == pytest.approx(np.stack(columns, axis=1), rel=1e-4, abs=1e12 * 1e-4)
+    assert np.linalg.norm(slip_state.shear(slip)) <= 1e6 * limit * (1 + 1e-12)
 
 
 def test_the_tangent_of_a_joint_against_differences():
@@ -119,13 +122,15 @@ def test_the_tangent_of_a_joint_against_differences():
     found = assembly.solve(load)
     u = found.displacement
     assembly = made.assembly()  # without the memory of what has slipped, which lies at the very edge of slip
-    grips = assembly._grips(u)
+    slip_states = assembly._stick_slip(u)
     rng = np.random.default_rng(2)
     step = rng.standard_normal(len(u)) * 1e-12
     step[made.fixed] = 0.0
-    moved = (assembly._out_of_balance(u - step, load, grips) - assembly._out_of_balance(u + step, load, grips)) / 2
+    moved = (
+        assembly._out_of_balance(u - step, load, slip_states) - assembly._out_of_balance(u + step, load, slip_states)
+    ) / 2
     expected = assembly.stiffness @ step
-    for trace, k_n, k_t in assembly._tangents(u, grips):
+    for trace, k_n, k_t in assembly._tangents(u, slip_states):
         move = assembly._move(trace, step)
         local = np.concatenate([k_n[:, None] * move[:, :1], np.einsum("qij,qj->qi", k_t, move[:, 1:])], axis=1)
         expected = expected + trace.relative.T @ local.ravel()

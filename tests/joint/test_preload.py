@@ -81,7 +81,7 @@ def test_loads_in_a_row_lead_on_to_the_next():
         found = ahead.solve(squeeze(structure, force))
         assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
     bent = squeeze(structure, 4e3) + 0.1 * face_pair(structure, 4e3)
-    assert ahead._ahead(bent) is ahead._past[-1][1]
+    assert ahead._extrapolated(bent) is ahead._past[-1][1]
     assert ahead.solve(bent).pressures[0] == pytest.approx(structure.assembly().solve(bent).pressures[0], rel=1e-6)
     slips = bars(material=STEEL, friction=0.3)
     assembly = slips.assembly()
@@ -218,14 +218,14 @@ def test_the_factorisation_of_the_last_modes_serves_the_next_load():
     structure = bars(material=STEEL)
     shift = structure.shift_frequency
     alone, helped = structure.assembly(), structure.assembly()
-    alone.corners = helped.corners = None  # else the first factorisation would be as near
+    alone.vertices = helped.vertices = None  # else the first factorisation would be as near
     start = alone.solve(squeeze(structure, 1e3))
     helped.solve(squeeze(structure, 1e3))
-    stiffness, _ = structure.joined(structure.springs(start.pressures))
-    modes = lowest_modes(stiffness, structure.vibrating[1], 8, shift_frequency=shift)
-    helped.take(modes.factorisation, 2 * shift)
+    stiffness, _ = structure.coupled(structure.springs(start.pressures))
+    modes = lowest_modes(stiffness, structure.dynamic_matrices[1], 8, shift_frequency=shift)
+    helped.adopt_factor(modes.factorisation, 2 * shift)
     assert helped.factor is not modes.factorisation
-    helped.take(modes.factorisation, shift)
+    helped.adopt_factor(modes.factorisation, shift)
     found, wanted = (problem.solve(squeeze(structure, 3e3)) for problem in (helped, alone))
     assert found.pressures[0] == pytest.approx(wanted.pressures[0], rel=1e-8)
     assert found.inner_steps < wanted.inner_steps
@@ -236,12 +236,12 @@ def test_the_corners_lead_to_the_same_equilibrium_in_fewer_steps():
     """A load outside the kern: the joint opens on one side, which one pressure for all of it knows nothing of."""
     structure = bars(material=STEEL)
     helped, alone = structure.assembly(), structure.assembly()
-    alone.corners = None
+    alone.vertices = None
     found, wanted = (problem.solve(face_pair(structure, 4e3)) for problem in (helped, alone))
     assert found.pressures[0] == pytest.approx(wanted.pressures[0], abs=1e-8 * wanted.pressures[0].max())
     assert found.inner_steps < 0.7 * wanted.inner_steps
-    assert alone.sprung is None
-    [(k_n, _)] = helped.sprung
+    assert alone.factorised_springs is None
+    [(k_n, _)] = helped.factorised_springs
     exact = structure.springs(found.pressures)[0].k_n
     assert np.mean((k_n > 0) == (exact > 0)) > 0.85
     both = (k_n > 0) & (exact > 0)
@@ -262,7 +262,7 @@ def test_where_the_corners_find_no_equilibrium_the_joint_begins_evenly(fault, mo
     monkeypatch.setattr(Equilibrium, "solve", fails)
     problem = structure.assembly()
     found = problem.solve(face_pair(structure, 4e3))
-    assert problem.sprung is None
+    assert problem.factorised_springs is None
     assert found.pressures[0] == pytest.approx(wanted.pressures[0], abs=1e-8 * wanted.pressures[0].max())
 
 
@@ -301,7 +301,7 @@ def test_loads_together_lead_where_they_lead_one_by_one(corners, monkeypatch):
     structure = bars(material=STEEL)
     alone, together = structure.assembly(), structure.assembly()
     if not corners:
-        alone.corners = together.corners = None
+        alone.vertices = together.vertices = None
     made = counting(structure, monkeypatch)
     wanted = [alone.solve(face_pair(structure, load), tolerance=1e-9) for load in LOADS]
     one_by_one = sum(factor.read for factor in made)
@@ -338,7 +338,7 @@ def test_loads_whose_joints_slip_or_whose_factorisation_is_of_another_law_go_one
     begun, taken = structure.assembly(), structure.assembly()
     begun.solve(squeeze(structure, 1e3))
     assert begun.can_go_together
-    taken.take(begun.factor, begun.shift_frequency)
+    taken.adopt_factor(begun.factor, begun.shift_frequency)
     assert not taken.can_go_together
     with pytest.raises(faying.InputError, match="the bolt forces do not balance"):
         structure.assembly().solve_together([squeeze(structure, 1e3), np.ones(structure.mesh.unknowns)], tolerance=1e-9)

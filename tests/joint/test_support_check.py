@@ -70,16 +70,16 @@ def test_a_part_that_slides_freely_is_named():
     bolt = Bolt(name="bolt", faces=("p0.left", "p1.right"))
     free = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=(joint,), bolts=(bolt,))
     for structure, still in ((free, 6), (replace(free, supports=(Support(face="p0.left"),)), 0)):
-        K, _ = structure.joined(structure.springs((np.full(len(joint.interface.weights), 5e6),)))
-        modes = lowest_modes(K, structure.vibrating[1], 12, shift_frequency=structure.shift_frequency)
+        K, _ = structure.coupled(structure.springs((np.full(len(joint.interface.weights), 5e6),)))
+        modes = lowest_modes(K, structure.dynamic_matrices[1], 12, shift_frequency=structure.shift_frequency)
         # two slips and a twist beside the rigid motions of the whole; the smaller part does most of it
         with pytest.raises(
             faying.InputError, match=f"{still + 3} motions cost no energy and {still} of them .* part 'p1' moves"
         ):
             check_motions(structure, modes)
     sticking = replace(free, joints=(replace(joint, law=JointLaw(model=law())),))
-    K, _ = sticking.joined(sticking.springs((np.full(len(joint.interface.weights), 5e6),)))
-    check_motions(sticking, lowest_modes(K, sticking.vibrating[1], 12, shift_frequency=sticking.shift_frequency))
+    K, _ = sticking.coupled(sticking.springs((np.full(len(joint.interface.weights), 5e6),)))
+    check_motions(sticking, lowest_modes(K, sticking.dynamic_matrices[1], 12, shift_frequency=sticking.shift_frequency))
 
 
 def clamped_pair(*supports):
@@ -96,8 +96,8 @@ def clamped_pair(*supports):
 
 def modes_of(structure):
     found = checked_preload(structure, structure.assembly(), PreloadCase((2e3,)))
-    K, _ = structure.joined(structure.springs(found.pressures))
-    return lowest_modes(K, structure.vibrating[1], 8, shift_frequency=structure.shift_frequency)
+    K, _ = structure.coupled(structure.springs(found.pressures))
+    return lowest_modes(K, structure.dynamic_matrices[1], 8, shift_frequency=structure.shift_frequency)
 
 
 def test_a_soft_suspension_is_no_loose_part():

@@ -27,7 +27,7 @@ def lap(request):
 
 def plain(statics, structure, load, steps):
     """Motion [m] (unknowns,) under a load that grows in steps; each ends where 1e-11 of it is left over."""
-    stiffness = sp.csc_matrix(structure.vibrating[0])
+    stiffness = sp.csc_matrix(structure.dynamic_matrices[0])
     moved = np.zeros(stiffness.shape[0])
     states = [contact.start for _, contact in statics.joints]
     for step in range(1, steps + 1):

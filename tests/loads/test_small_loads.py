@@ -47,7 +47,7 @@ def test_small_loads_are_those_of_the_matrices(tight):
     statics = statics_of(of_state(tight, modes=False))
     acts = acting(structure, cases(TINY))
     linear = statics.linear(list(acts.values()))
-    stiffness, _ = structure.joined(tight.springs)
+    stiffness, _ = structure.coupled(tight.springs)
     for act, found in zip(acts.values(), linear, strict=True):
         force = act.force.copy()
         force[structure.fixed] = 0.0
@@ -90,7 +90,7 @@ def test_the_answer_does_not_depend_on_the_basis_or_on_the_company(tight):
     acts = acting(tight.structure, cases(1500.0))
     [[*_, state]] = statics.solve([("bend", statics.rest_state(nothing(tight.structure)), acts["bend"], 4)])
     moved, structure = statics.motion(state), tight.structure
-    force = acts["bend"].force - structure.held_back(moved)
+    force = acts["bend"].force - structure.elastic_forces(moved)
     for (trace, contact), traction in zip(statics.joints, state.tractions, strict=True):
         before = contact.advance(contact.start, contact.rest)[1]
         force -= trace.relative.T @ (contact.weights[:, None] * (traction - before)).ravel()

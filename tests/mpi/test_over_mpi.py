@@ -13,8 +13,8 @@ import faying
 from faying.errors import FayingError
 from faying.fe.elasticity import rigid_motions
 from faying.mpi.over_mpi import OverMpi, processes_named
+from faying.numerics.modal_reanalysis import refined_modes
 from faying.numerics.modes import lowest_modes
-from faying.numerics.nearby import refined_modes
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import Single, factorise_roughly
 from faying.numerics.solve import chosen, factorise

@@ -11,11 +11,11 @@ import faying
 from faying.errors import NotConverged
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
-from faying.joint.frame import unknowns_of
+from faying.joint.assembled_parts import unknowns_of
 from faying.numerics.by_parts import PartByPart
 from faying.numerics.constraint import constrain
+from faying.numerics.modal_reanalysis import refined_modes
 from faying.numerics.modes import lowest_modes
-from faying.numerics.nearby import refined_modes
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import Single
 from faying.numerics.solve import available, factorise

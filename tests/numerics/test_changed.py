@@ -5,8 +5,8 @@ import pytest
 from scipy.sparse import csr_array, random_array
 
 from faying.numerics.changed import UpdatedStiffness, whole
+from faying.numerics.modal_reanalysis import ModalReanalysis
 from faying.numerics.modes import lowest_modes
-from faying.numerics.nearby import NearbyModes
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_large_matrices_too():
 def test_modes_of_a_changed_stiffness_are_those_of_the_sum(pair):
     mass = csr_array(np.eye(200))
     modes = lowest_modes(pair[0], mass, 8, shift_frequency=0.01)
-    near = NearbyModes(modes, pair[0], mass, rigid=0)
+    near = ModalReanalysis(modes, pair[0], mass, rigid=0)
     both = UpdatedStiffness(before=pair[0], change=pair[1])
     found = near.under(both, 4, tolerance=1e-9)
     exact = np.sqrt(np.linalg.eigvalsh(whole(both).toarray())[:4]) / (2 * np.pi)

@@ -11,8 +11,8 @@ from faying.errors import NotConverged
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.numerics.constraint import constrain
+from faying.numerics.modal_reanalysis import EVERYWHERE, ModalReanalysis, refined_modes
 from faying.numerics.modes import lowest_modes
-from faying.numerics.nearby import EVERYWHERE, NearbyModes, refined_modes
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import Single
 from faying.numerics.solve import available, conjugate_gradients, factorise
@@ -121,7 +121,7 @@ def test_no_mode_of_a_cluster_is_missed(count, apart, copies, spare, seed):
 def test_one_factorisation_gives_the_modes_under_one_spring_after_another(bars, factors):
     """Springs softer and stiffer by up to thirty: none of the modes below the last is missed."""
     K, M = sprung(bars, 1e12, 5e11)
-    near = NearbyModes(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6, most=60)
+    near = ModalReanalysis(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6, most=60)
     for factor in factors:
         changed, _ = sprung(bars, 1e12 * 10**factor, 5e11 * 10**factor)
         found = near.under(changed, 10, tolerance=1e-9)
@@ -134,7 +134,7 @@ def test_one_factorisation_gives_the_modes_under_one_spring_after_another(bars, 
 def test_modes_of_every_symmetry_are_found(bars, before, after, tolerance):
     """A softer joint brings torsion and bending down from beyond the basis, which residuals of others do not show."""
     K, M = sprung(bars, 1e12 * before, 5e11 * before)
-    near = NearbyModes(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6)
+    near = ModalReanalysis(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6)
     changed, _ = sprung(bars, 1e12 * after, 5e11 * after)
     found = near.under(changed, 10, tolerance=tolerance)
     wanted = lowest_modes(changed, M, 16, shift_frequency=SHIFT)
@@ -157,7 +157,7 @@ def test_what_rounding_has_left_of_a_direction_is_orthonormal(bars):
 
 def test_what_asks_for_too_many_rounds_is_given_up_early(bars):
     K, M = sprung(bars, 1e9, 1e9)
-    near = NearbyModes(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6)
+    near = ModalReanalysis(lowest_modes(K, M, 18, shift_frequency=SHIFT), K, M, rigid=6)
     solves = []
     solve = near.modes.factorisation.solve
     near.modes.factorisation.solve = lambda right: solves.append(right.shape) or solve(right)

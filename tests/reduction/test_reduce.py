@@ -40,8 +40,8 @@ def full(structure, law, force):
     joint = replace(structure.joints[0], law=law)
     structure = replace(structure, joints=(joint,))
     found = structure.assembly().solve(structure.loads @ [force])
-    K, loss = structure.joined(structure.springs(found.pressures))
-    M, still = structure.vibrating[1], structure.rigid.shape[1]
+    K, loss = structure.coupled(structure.springs(found.pressures))
+    M, still = structure.dynamic_matrices[1], structure.rigid.shape[1]
     modes = lowest_modes(K, M, still + COUNT + 15, shift_frequency=structure.shift_frequency)
     return found, damped_modes(modes, K, M, loss, rigid=still, count=COUNT, tolerance=1e-9)
 
@@ -288,8 +288,8 @@ def test_a_solid_bolt_in_small_bases():
     for force in (2e3, 6e3):
         reduction.train(laws, np.array([force]), [None] * len(laws), tolerance=TOLERANCE)
     found = made.assembly().solve(made.loads @ [3e3])
-    K, _ = made.joined(made.springs(found.pressures))
-    modes = lowest_modes(K, made.vibrating[1], 6 + COUNT, shift_frequency=made.shift_frequency)
+    K, _ = made.coupled(made.springs(found.pressures))
+    modes = lowest_modes(K, made.dynamic_matrices[1], 6 + COUNT, shift_frequency=made.shift_frequency)
     variant = reduction.evaluate(laws, np.array([3e3]), [None] * len(laws))
     assert variant.frequencies == pytest.approx(modes.frequencies[6:], rel=1e-5)
 
@@ -341,10 +341,10 @@ def test_a_scaled_law_is_the_law_with_that_scale():
 @pytest.mark.parametrize("open_share", [0.0, 0.3, 1.0])
 def test_springs_of_groups_are_the_sum_over_the_points(open_share):
     """Points without springs are left out where they are many; the sum is that over all of them."""
-    from faying.reduction.groups import sprung
+    from faying.reduction.groups import joint_stiffness
 
     rng = np.random.default_rng(3)
     motion, springs = rng.standard_normal((60, 3, 5)), rng.random((60, 3))
     springs[: int(60 * open_share)] = 0.0
     expected = np.einsum("qim,qi,qin->mn", motion, springs, motion)
-    assert sprung(motion.reshape(180, 5), springs) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    assert joint_stiffness(motion.reshape(180, 5), springs) == pytest.approx(expected, rel=1e-12, abs=1e-12)

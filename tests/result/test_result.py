@@ -14,9 +14,9 @@ def test_names_of_other_laws_are_read_as_they_were_given_and_written_again(tmp_p
         alternatives=("JK", "hollow"),
         alternative_frequencies=two,
         alternative_loss_factors=two,
-        alternative_beyond_frequencies=two,
+        alternative_above_range_frequencies=two,
         alternative_outside_share=two[0],
-        alternative_beyond_share=two[0],
+        alternative_above_range_share=two[0],
         alternative_reach=two[0, 0],
     )
     read = Result.load(written.save(tmp_path / "result.nc"))

@@ -16,7 +16,7 @@ from faying.setup import template
 from faying.setup.reach import law_reach
 from faying.study import Study
 from faying.sweeps.axes import Grid, axis_of
-from faying.sweeps.recipe import Recipe
+from faying.sweeps.variant_builder import VariantBuilder
 from tests.helpers import meshfiles
 from tests.helpers.models import two
 
@@ -87,7 +87,7 @@ def by_check(plan):
 
 def by_recipe(design):
     """The law at the first point of a sweep or of the samples that an identification or a prediction takes."""
-    laws, _, _ = Recipe(design=design, pairs=((STEEL, STEEL),)).laws(0)
+    laws, _, _ = VariantBuilder(design=design, pairs=((STEEL, STEEL),)).laws(0)
     return laws[0].model
 
 

@@ -23,8 +23,8 @@ def study(folder, gap, snap=None):
 
 def frequencies(structure, force):
     found = structure.assembly().solve(force * structure.loads[:, 0])
-    K, _ = structure.joined(structure.springs(found.pressures))
-    return lowest_modes(K, structure.vibrating[1], 9, shift_frequency=structure.shift_frequency).frequencies[6:]
+    K, _ = structure.coupled(structure.springs(found.pressures))
+    return lowest_modes(K, structure.dynamic_matrices[1], 9, shift_frequency=structure.shift_frequency).frequencies[6:]
 
 
 def test_a_gap_that_is_closed_is_that_of_faces_that_touch(tmp_path):

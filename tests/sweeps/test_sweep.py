@@ -18,8 +18,8 @@ from faying.study import Study, part_folder
 from faying.study.keys.law import LawChoice
 from faying.sweeps import sweep as module
 from faying.sweeps.axes import Grid, axis_of
-from faying.sweeps.recipe import Recipe
 from faying.sweeps.sweep import sweep
+from faying.sweeps.variant_builder import VariantBuilder
 from tests.helpers.cluster import cluster_of
 from tests.helpers.preloads import pulled
 from tests.helpers.studies import write
@@ -153,7 +153,7 @@ def test_a_half_made_by_another_version_is_refused(plan, tmp_path, monkeypatch):
     def stopped(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(module, "_begun", stopped)
+    monkeypatch.setattr(module, "_first_bases", stopped)
     monkeypatch.setattr(part_folder, "__version__", "0.0.9")
     with pytest.raises(KeyboardInterrupt):
         sweep(plan, axes(), out)
@@ -175,13 +175,13 @@ def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, mo
     """To the last bit: each chunk begins anew, and libraries take one thread here and there."""
     pytest.importorskip("distributed", reason="the extra dask is not installed")
     monkeypatch.setattr(module, "CHUNK", 1)
-    real, bases = module._begun, []
+    real, bases = module._first_bases, []
 
     def once(*given):
         bases.extend([] if bases else [real(*given)])
         return bases[0]
 
-    monkeypatch.setattr(module, "_begun", once)
+    monkeypatch.setattr(module, "_first_bases", once)
     here = sweep(plan, axes(), tmp_path / "here.nc")
     told = []
     with cluster_of(tmp_path, 2) as cluster:
@@ -194,16 +194,16 @@ def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, mo
         there = sweep(plan, axes(), tmp_path / "there.nc", dask=cluster.address, report=report)
         assert cluster.alive() == ["worker-1"]
     assert told[-12:] == list(range(1, 13))
-    for name in ("frequencies", "loss_factors", "estimate", "greatest_pressure", "open_share", "beyond_share"):
+    for name in ("frequencies", "loss_factors", "estimate", "greatest_pressure", "open_share", "above_range_share"):
         assert np.array_equal(getattr(there, name), getattr(here, name)), name
 
 
 def test_points_beyond_the_law_are_held_there_and_counted(plan, tmp_path):
     found = sweep(plan, axes("bolt.preload=1 kN,2 kN,400 kN,800 kN"), tmp_path / "out.nc")
     assert np.isfinite(found.frequencies).all()
-    assert found.beyond_share[1] == 0
-    assert found.beyond_share[3] > 0.5
-    assert found.to_dict()["beyond_law"] == np.count_nonzero(found.beyond_share > 0.1)
+    assert found.above_range_share[1] == 0
+    assert found.above_range_share[3] > 0.5
+    assert found.to_dict()["beyond_law"] == np.count_nonzero(found.above_range_share > 0.1)
     assert found.frequencies[3] == pytest.approx(found.frequencies[2], rel=0.02)  # no law rises there any more
 
 
@@ -262,14 +262,14 @@ def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbour
 
 def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path, monkeypatch):
     """The bases begin where there is an answer; the rest is NaN and told."""
-    made = Recipe.laws
+    made = VariantBuilder.laws
 
     def some(recipe, index):
         if recipe.design.point(index).forces[0] > 3e3:
             raise faying.InputError("no law here")
         return made(recipe, index)
 
-    monkeypatch.setattr(Recipe, "laws", some)
+    monkeypatch.setattr(VariantBuilder, "laws", some)
     swept = sweep(plan, axes("bolt.preload=2 kN,4 kN"), tmp_path / "out.nc")
     assert np.all(np.isfinite(swept.frequencies[0]))
     assert np.all(np.isnan(swept.frequencies[1]))

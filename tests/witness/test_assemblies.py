@@ -132,7 +132,7 @@ def test_modes_under_preload_are_those_of_contact_in_calculix(name, size, within
     mesh = structure.mesh
     state = structure.solve(forces, modes=1)
     K, M = assemble(mesh, structure.materials, mass="stiffness")
-    K = K + structure.sprung(state.springs)
+    K = K + structure.joint_stiffness(state.springs)
     held = held_unknowns(mesh)
     free = np.setdiff1d(np.arange(mesh.unknowns), held)
     ours = lowest_modes(K[free][:, free].tocsr(), M[free][:, free].tocsr(), MODES, shift_frequency=200.0).frequencies

@@ -18,7 +18,7 @@ from faying.form.form import VARIED as FORM
 from faying.materials import CATALOGUE
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse
-from faying.result.backbone import Backbone, Witness
+from faying.result.backbone import Backbone, QuasiStaticCheck
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
 from faying.result.load_cases import LoadCases, LoadIntervals
@@ -38,7 +38,7 @@ GROUPS = {
     "full response": FullResponse,
     "bolt_numbers": BoltNumbers,
     "A backbone": Backbone,
-    "witness of a backbone": Witness,
+    "witness of a backbone": QuasiStaticCheck,
     "Load cases": LoadCases,
     "intervals of load cases": LoadIntervals,
 }

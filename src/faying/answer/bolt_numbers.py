@@ -66,7 +66,7 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
 
 
 def _clamped(structure: Structure, state: LoadedCase, before: Sequence[Clamping]) -> Clamping:
-    stiffness = UpdatedStiffness(before=structure.vibrating[0], change=structure.sprung(state.springs))
+    stiffness = UpdatedStiffness(before=structure.dynamic_matrices[0], change=structure.joint_stiffness(state.springs))
     like = np.concatenate([one.motions for one in before], axis=1) if before else None
     return clamping(structure, stiffness, state.modes, state.springs, like=like)
 
@@ -74,7 +74,7 @@ def _clamped(structure: Structure, state: LoadedCase, before: Sequence[Clamping]
 def _modal_forces(structure: Structure, shapes: Array) -> Array:
     """Force [N/m] in each bolt (m, b) while the point that moves most in a mode (m, nodes, 3) moves by 1 m."""
     most = np.linalg.norm(shapes, axis=2).max(axis=1)
-    forces = shapes.reshape(len(shapes), -1) @ structure.pulls.T
+    forces = shapes.reshape(len(shapes), -1) @ structure.bolt_force_operator.T
     rigid = [bool(bolt.rigidity) for bolt in structure.fitted_bolts]
     return np.asarray(np.where(rigid, forces, NAN) / most[:, None])
 

@@ -138,9 +138,9 @@ def of_state(state: State, modes: bool) -> Preloaded:
 
 def near_factor(structure: Structure, springs: Sequence[Springs[Any]], solver: str | None) -> Any:
     """A factorisation near the stiffness under the springs of the joints."""
-    stiffness = (structure.vibrating[0] + structure.sprung(springs)).tocsr()
+    stiffness = (structure.dynamic_matrices[0] + structure.joint_stiffness(springs)).tocsr()
     shift = (2 * np.pi * structure.shift_frequency) ** 2
-    matrix = Shifted(stiffness=stiffness, mass=structure.vibrating[1], shift=shift)
+    matrix = Shifted(stiffness=stiffness, mass=structure.dynamic_matrices[1], shift=shift)
     return factorise_roughly(matrix, rigid=structure.rigid, solver=structure.solver(solver))
 
 
@@ -158,9 +158,11 @@ def statics_of(base: Preloaded) -> LoadStatics:
         for joint, s in zip(structure.joints, base.springs, strict=True)
     ]
     return LoadStatics(
-        stiffness=UpdatedStiffness(before=structure.vibrating[0], change=structure.sprung(base.springs)),
+        stiffness=UpdatedStiffness(
+            before=structure.dynamic_matrices[0], change=structure.joint_stiffness(base.springs)
+        ),
         factor=base.factor,
-        held_back=structure.held_back,
+        elastic_forces=structure.elastic_forces,
         joints=pairs,
         displacement=base.preload.displacement,
         rigid=structure.rigid,
@@ -279,7 +281,7 @@ def _modes(
     from scipy.optimize import linear_sum_assignment
 
     rest, shapes = base.rest
-    mass = base.structure.vibrating[1]
+    mass = base.structure.dynamic_matrices[1]
     before = Weighted.of(shapes, mass)
     frequencies, alike = [], []
     for load, pressure in zip(loads, pressures, strict=True):

@@ -88,8 +88,8 @@ def intervals_of(
     intervals = LoadIntervals(
         inputs=tuple(one.words for one in inputs),
         bolt_force=force,
-        slip_use=np.exp(slip) * _told(found.friction_needed_worst / found.friction),
-        head_use=np.exp(head) * _told(found.head_friction_needed / found.head_friction),
+        slip_use=np.exp(slip) * _use_factor(found.friction_needed_worst / found.friction),
+        head_use=np.exp(head) * _use_factor(found.head_friction_needed / found.head_friction),
         opened=np.clip(opened, 0.0, 1.0),
         check=off,
     )
@@ -111,7 +111,7 @@ def _answers(found: LoadCases) -> list[Array]:
     return [found.bolt_force, np.log(np.maximum(slip, LEAST)), np.log(np.maximum(head, LEAST)), found.opened]
 
 
-def _told(use: Array) -> Array:
+def _use_factor(use: Array) -> Array:
     """1, or a use of friction over the least one of which the logarithm is taken [-]."""
     return np.asarray(np.minimum(use / LEAST, 1.0))
 
@@ -130,7 +130,7 @@ def _moved(
             friction[one.joint] = (friction[one.joint] or 0.0) * factor
     structure = base.structure.with_joints(friction=friction)
     problem = structure.assembly(solver=study.modes.solver)
-    problem.take(base.factor, 0.0)
+    problem.adopt_factor(base.factor, 0.0)
     preload = checked_preload(structure, problem, replace(study.preloads[number], forces=tuple(forces.tolist())))
     springs = structure.springs(preload.pressures)
     moved = replace(base, structure=structure, preload=preload, springs=springs, rest=None, notes=())

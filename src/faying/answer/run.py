@@ -165,7 +165,7 @@ def collect(
         mac=with_first,
         **_at_loads(states, lossless, bounds),
         **_at_levels(case, states),
-        **_bonded_beyond(states, lossless),
+        **_bonded_above_range(states, lossless),
         **_at_points(states),
         **_on_faces(structure, states),
         **_outline(structure, shapes, states),
@@ -231,7 +231,7 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: tuple[Array,
         "low": None if low is None else np.maximum(low, bounds[0]),
         "high": None if high is None else np.minimum(high, bounds[1]),
         "outside_share": np.array([s.outside_share for s in states]),
-        "beyond_share": np.array([s.beyond_share for s in states]),
+        "above_range_share": np.array([s.above_range_share for s in states]),
         "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
         "imbalance": np.array([s.preload.imbalance for s in states]),
         "newton_steps": np.array([s.preload.newton_steps for s in states]),
@@ -249,7 +249,7 @@ def _at_levels(case: Case, states: Sequence[LoadedCase]) -> dict[str, Any]:
 
 def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[LoadedCase]) -> dict[str, Any]:
     """Fields of the result on the outer surface."""
-    outer, mass = structure.surface(), structure.vibrating[1]
+    outer, mass = structure.surface(), structure.dynamic_matrices[1]
     lagging = [s.damped.scaled_shapes(mass)[1].T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
     return {
         "outline": structure.mesh.points[outer.nodes],
@@ -324,14 +324,14 @@ def _at_points(states: Sequence[LoadedCase]) -> dict[str, Any]:
     }
 
 
-def _bonded_beyond(states: Sequence[LoadedCase], lossless: bool) -> dict[str, Any]:
+def _bonded_above_range(states: Sequence[LoadedCase], lossless: bool) -> dict[str, Any]:
     """Frequencies and loss factors with what is beyond the end of a law bonded, where anything is at any load."""
     if all(s.beyond is None for s in states):
         return {}
     losses = [(s.beyond or s.damped).loss_factors for s in states]
     return {
-        "beyond_frequencies": np.stack([s.bonded_frequencies for s in states]),
-        "beyond_loss_factors": np.stack([np.where(lossless, np.nan, loss) for loss in losses]),
+        "above_range_frequencies": np.stack([s.bonded_frequencies for s in states]),
+        "above_range_loss_factors": np.stack([np.where(lossless, np.nan, loss) for loss in losses]),
     }
 
 

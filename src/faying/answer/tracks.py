@@ -16,7 +16,7 @@ from faying.units import load_text
 
 def shapes_of(case: Case, states: Sequence[LoadedCase]) -> list[Array]:
     """Shapes (m, nodes, 3) at each load: those of the complex modes, for real modes that lie close mix."""
-    mass = case.structure.vibrating[1]
+    mass = case.structure.dynamic_matrices[1]
     return [s.damped.real_shapes(mass).T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
 
 
@@ -25,7 +25,7 @@ def macs(case: Case, states: Sequence[LoadedCase]) -> tuple[list[Array], Array]:
 
     The latter (load, m, m).
     """
-    mass = case.structure.vibrating[1]
+    mass = case.structure.dynamic_matrices[1]
     first = before = Weighted.of(states[0].damped.shapes, mass)
     steps, with_first = [], [first.mac(first)]
     for state in states[1:]:

@@ -12,7 +12,7 @@ from faying.backbones.result import BackboneCurve, collected
 from faying.backbones.store import CurveStore
 from faying.case.alternative import changed, study_with
 from faying.case.case import Case, checked_laws, law_reasons, read_for, surfaces_of
-from faying.case.preloads import settled
+from faying.case.preloads import solved_preload
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.joint.attachments import nearest_node
@@ -314,7 +314,7 @@ def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress:
         if case is not before:
             problem, before = structure.assembly(solver=study.modes.solver), case
         progress.stage(f"preload {study.preloads[index].name}", 0.2)
-        preload = settled(case, index, problem)
+        preload = solved_preload(case, index, problem)
         springs = structure.springs(preload.pressures)
         for joint, own in zip(structure.joints, springs, strict=True):
             if not np.any(own.k_t > 0):
@@ -339,7 +339,7 @@ def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress:
 
 
 def _modes(case: Case, springs: Sequence[Springs[Interface]], mode: int) -> Modes:
-    most = int(np.count_nonzero(case.structure.vibrating[1].diagonal() > 0)) // 2
+    most = int(np.count_nonzero(case.structure.dynamic_matrices[1].diagonal() > 0)) // 2
     wanted = max(min(mode + EXTRA_MODES, most - case.rigid_count), 1)
     modes, *_ = modes_of(case.modal, springs, case.rigid_count + wanted)
     check_motions(case.structure, modes)
@@ -413,7 +413,7 @@ class _Prepared:
     def law_damping(self) -> float:
         """Half of the loss factor [-] that the laws give the mode at rest."""
         basis, structure = self.basis, self.case.structure
-        stiffness, loss = structure.joined(basis.springs)
+        stiffness, loss = structure.coupled(basis.springs)
         own = basis.modes_here()
         found = damped_modes(own, stiffness, basis.mass, loss, rigid=structure.rigid_count, count=basis.mode)
         return float(found.damping_ratios[basis.mode - 1])

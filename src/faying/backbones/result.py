@@ -17,7 +17,7 @@ from faying.microslip.epmc import Epmc, EpmcCurve, EpmcPoint
 from faying.microslip.slip_basis import SlipBasis
 from faying.microslip.slip_cycle import nearest, static_cycle
 from faying.notes import Note
-from faying.result.backbone import Backbone, ErrorBounds, Witness
+from faying.result.backbone import Backbone, ErrorBounds, QuasiStaticCheck
 from faying.study.keys.backbone import BackboneChoice
 from faying.typing import Array
 
@@ -55,7 +55,7 @@ def collected(curve: BackboneCurve, *, bounded: bool = True) -> Backbone:
     points, residuals = line.points[first:], curve.residuals[first:]
     bounds, witness, notes = ErrorBounds(), None, []
     if bounded:
-        bounds, witness = error_bounds(curve, points), _witness(curve, points)
+        bounds, witness = error_bounds(curve, points), _quasi_static_check(curve, points)
         notes = _notes(curve, bounds, witness)
     interfaces = [joint.interface for joint in structure.joints]
     row = curve.epmc.observer
@@ -129,7 +129,7 @@ def _along(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> dict[str, Any]:
 
 def _bolt_forces(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> Array:
     """Amplitude of each bolt's force [N] (points, bolts): half of its range in a cycle."""
-    rows = curve.case.structure.pulls @ curve.basis.basis.vectors
+    rows = curve.case.structure.bolt_force_operator @ curve.basis.basis.vectors
     phase = np.linspace(0, 2 * np.pi, 64, endpoint=False)
     harmonics = range(1, curve.choice.harmonics + 1)
     waves = np.stack([wave(h * phase) for h in harmonics for wave in (np.cos, np.sin)])
@@ -170,7 +170,7 @@ def _bounds_at(epmc: Epmc, last: EpmcPoint) -> ErrorBounds:
     )
 
 
-def _witness(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> Witness | None:
+def _quasi_static_check(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> QuasiStaticCheck | None:
     levels = [p.level for p in points]
     wanted = [levels[-1] / APART**k for k in range(WITNESSES) if levels[-1] / APART**k >= levels[0]]
     rows = []
@@ -184,7 +184,7 @@ def _witness(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> Witness | Non
         rows.append((p.amplitude, p.level, found, found.frequency / p.frequency - 1, change))
     if not rows:
         return None
-    return Witness(
+    return QuasiStaticCheck(
         amplitude=np.array([row[0] for row in rows]),
         acceleration=np.array([row[1] for row in rows]),
         frequency=np.array([row[2].frequency for row in rows]) / (2 * np.pi),
@@ -194,7 +194,7 @@ def _witness(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> Witness | Non
     )
 
 
-def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: Witness | None) -> list[Note]:
+def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: QuasiStaticCheck | None) -> list[Note]:
     case, line, load = curve.case, curve.line, curve.load
     preload = curve.basis.preload
     out = [note for note in case.notes if note.code != "no-loss"]  # the loss is that of slip here
@@ -231,7 +231,7 @@ def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: Witness | None) -
     return list(dict.fromkeys(out))
 
 
-def _differences(curve: BackboneCurve, witness: Witness) -> list[Note]:
+def _differences(curve: BackboneCurve, witness: QuasiStaticCheck) -> list[Note]:
     """Say where the static cycle gives another damping, and what they do not share."""
     out = []
     for level, change in zip(witness.acceleration, witness.damping_change, strict=True):

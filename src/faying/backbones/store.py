@@ -6,13 +6,13 @@ from typing import Any
 
 from faying.files import write_arrays
 from faying.microslip.epmc import EpmcPoint
-from faying.study.part_folder import Kept, load_arrays
+from faying.study.part_folder import PartFile, load_arrays
 from faying.typing import Array
 
 LISTS = ("sliding", "opening", "dissipated", "traction")  # one array for each joint
 
 
-class CurveStore(Kept):
+class CurveStore(PartFile):
     """The folder OUT.part beside the output; without an output nothing is kept."""
 
     def __init__(self, out: Path | None, fingerprint: str) -> None:

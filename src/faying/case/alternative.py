@@ -101,9 +101,9 @@ def alternative_fields(alternatives: Sequence[Alternative], loads: int, modes: i
     rows: dict[str, list[Any]] = {
         "alternative_frequencies": [],
         "alternative_loss_factors": [],
-        "alternative_beyond_frequencies": [],
+        "alternative_above_range_frequencies": [],
         "alternative_outside_share": [],
-        "alternative_beyond_share": [],
+        "alternative_above_range_share": [],
         "alternative_reach": [],
     }
     for other in alternatives:
@@ -114,7 +114,7 @@ def alternative_fields(alternatives: Sequence[Alternative], loads: int, modes: i
             nothing if lossless else np.stack([s.damped.loss_factors for s in states]),
             np.stack([s.bonded_frequencies for s in states]) if states else nothing,
             np.array([s.outside_share for s in states]) if states else alone,
-            np.array([s.beyond_share for s in states]) if states else alone,
+            np.array([s.above_range_share for s in states]) if states else alone,
             min((joint.law.model.greatest_pressure for joint in joints), default=np.nan),
         ]
         for values, one in zip(rows.values(), found, strict=True):

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.case.beyond import stiff_as_bonded
+from faying.case.above_range import stiff_as_bonded
 from faying.case.case import Case
 from faying.joint.shared_modes import modes_with
 from faying.joint.structure import bond, merged
@@ -25,7 +25,7 @@ def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
     that is not possible, springs between them are extrapolated to rigid ones. Other faces are tied, with a note.
     """
     structure = case.structure
-    free = modes_with(case.modal, *structure.vibrating, rigid=structure.loose())
+    free = modes_with(case.modal, *structure.dynamic_matrices, rigid=structure.unjoined_motions())
     still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
     return still[_elastic(case)], *_bonded(case)
 
@@ -56,7 +56,7 @@ def _bonded(case: Case) -> tuple[Array, list[Note]]:
 def _merged(case: Case, merge: Any) -> Array:
     """The unknowns of both faces of every joint are one; merge: as `Structure.bonded` gives it."""
     structure = case.structure
-    K, M = (merged(matrix, merge) for matrix in structure.vibrating)
+    K, M = (merged(matrix, merge) for matrix in structure.dynamic_matrices)
     share = np.asarray(merge.sum(axis=0)).ravel()
     rigid = (merge.T @ structure.rigid) / share[:, None]
     way = structure.solver(case.study.modes.solver)
@@ -68,7 +68,7 @@ def _merged(case: Case, merge: Any) -> Array:
 
 def _tied(case: Case) -> Array:
     """Faces that do not match, as welded ones of a study are."""
-    K, M = case.structure.vibrating
+    K, M = case.structure.dynamic_matrices
     return modes_with(case.modal, K + case.structure.tied(), M, rigid=case.structure.rigid).frequencies[_elastic(case)]
 
 
@@ -81,7 +81,7 @@ def _extrapolated(case: Case) -> Array:
 def _by_springs(case: Case, times: float) -> Array:
     """Springs between the faces, so many times as stiff as those that stand for bonded faces."""
     structure = case.structure
-    K, M = structure.vibrating
+    K, M = structure.dynamic_matrices
     stiff = times * stiff_as_bonded(structure)
     for joint in structure.joints:
         springs = joint.interface.springs(*2 * (np.full(len(joint.interface.weights), stiff),))

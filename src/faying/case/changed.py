@@ -47,7 +47,7 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
     reduction = Reduction.about(
         structure,
         factor=last.modes.factorisation,
-        reference=(last.modes.factorised + last.modes.shift * structure.vibrating[1]).tocsr(),
+        reference=(last.modes.factorised + last.modes.shift * structure.dynamic_matrices[1]).tocsr(),
         state=last.preload.displacement,
         shapes=last.modes.shapes[:, case.rigid_count :],
         count=case.study.modes.count,

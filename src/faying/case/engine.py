@@ -56,7 +56,7 @@ class Direct:
         self.case = case
         structure, solver = case.structure, case.study.modes.solver
         self._problem = PlainPreload(
-            structure.standing,
+            structure.supported_stiffness,
             structure.rigid,
             [(joint.interface, joint.law) for joint in structure.joints],
             friction=[joint.friction for joint in structure.joints],
@@ -79,7 +79,7 @@ class Direct:
         damped = damped_modes(
             modes,
             stiffness,
-            structure.vibrating[1],
+            structure.dynamic_matrices[1],
             loss,
             rigid=case.rigid_count,
             count=choice.count,
@@ -103,10 +103,10 @@ class Direct:
 
     def _modes(self, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any]:
         case, structure = self.case, self.case.structure
-        stiffness, _ = structure.joined(springs)
+        stiffness, _ = structure.coupled(springs)
         return lowest_modes(
             stiffness,
-            structure.vibrating[1],
+            structure.dynamic_matrices[1],
             case.modal.mode_count,
             shift_frequency=case.shift_frequency,
             solver=case.study.modes.solver,
@@ -153,7 +153,7 @@ class Reanalysis:
         """See `Engine`; the factorisation at hand serves the other case, too."""
         problem = case.structure.assembly(solver=case.study.modes.solver)
         if self._shared.near is not None:
-            problem.take(self._shared.near.modes.factorisation, case.shift_frequency)
+            problem.adopt_factor(self._shared.near.modes.factorisation, case.shift_frequency)
         return Reanalysis(case, shared=self._shared, problem=problem)
 
 

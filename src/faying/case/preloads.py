@@ -9,7 +9,7 @@ from faying.joint.tighten import tighten_together
 AT_ONCE = 8_000_000  # unknowns of all loads whose preload is found at once
 
 
-def settled(case: Case, number: int, problem: PreloadProblem) -> PreloadState:
+def solved_preload(case: Case, number: int, problem: PreloadProblem) -> PreloadState:
     """The preload of a case at one of its loads, counted from 0."""
     return checked_preload(case.structure, problem, case.study.preloads[number])
 
@@ -31,7 +31,7 @@ class Preloads:
             self._found = self._together()
         found = self._found[number]
         if found is None:
-            return settled(self.case, number, self.problem)
+            return solved_preload(self.case, number, self.problem)
         check_contact(self.case.structure, found.pressures, found.openings)
         return found
 

@@ -57,7 +57,7 @@ class LoadedStructure:
             for side in (choice.inputs, choice.outputs)
         )
         lines = np.linspace(choice.first, choice.last, choice.points)
-        found = self._at(lines, outputs, inputs, self.structure.pulls.T)
+        found = self._at(lines, outputs, inputs, self.structure.bolt_force_operator.T)
         count = len(outputs[0])
         answer = ResponseAtLoad(
             frequencies=found.frequencies,

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from faying.case.beyond import Beyond, bonded_beyond
+from faying.case.above_range import AboveRange, bonded_above_range
 from faying.case.case import Case, Progress
 from faying.case.ends import Pair, ends_of
 from faying.case.engine import Engine
@@ -40,7 +40,7 @@ class LoadedCase:
         ends: frequencies [Hz] at 5 and 95 % of each doubt of the joints, by its name; None where none are asked for.
         levels: damping at levels of acceleration; None where none is asked for, or no joint can slip.
         outside_share: of the normal stiffness of all joints [-], where their law is outside its validity range.
-        beyond_share: of their area [-], where the pressure exceeds the end of their law.
+        above_range_share: of their area [-], where the pressure exceeds the end of their law.
     """
 
     load: float
@@ -50,10 +50,10 @@ class LoadedCase:
     damped: DampedModes
     response: ResponseAtLoad | None
     test_response: FullResponse | None
-    beyond: Beyond | None
+    beyond: AboveRange | None
     notes: tuple[Note, ...]
     outside_share: float
-    beyond_share: float
+    above_range_share: float
     levels: LevelDamping | None = None
     ends: Mapping[str, Pair] | None = None
 
@@ -89,11 +89,11 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
         modes=modes,
         damped=damped,
         stiffness=found.stiffness,
-        mass=structure.vibrating[1],
+        mass=structure.dynamic_matrices[1],
         loss=found.loss,
     )
     response, test_response, notes = _responses(case, number, loaded, progress)
-    beyond = bonded_beyond(case, load, springs, damped)
+    beyond = bonded_above_range(case, load, springs, damped)
     return LoadedCase(
         load=load,
         ends=ends_of(case, preload, engine) if ranges else None,
@@ -112,7 +112,7 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
             *pressure_notes(structure, preload.pressures, load),
         ),
         outside_share=_outside(structure, springs),
-        beyond_share=_share(springs, [j.past_end(s) for j, s in zip(structure.joints, springs, strict=True)]),
+        above_range_share=_share(springs, [j.above_range(s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
 
 

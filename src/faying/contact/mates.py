@@ -16,7 +16,7 @@ from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law import ContactLaw, checked
 from faying.contact.models.half_space import HalfSpace
 from faying.contact.parameter import TABLE
-from faying.contact.two_faces import GIVEN, Counter, Faces, together
+from faying.contact.two_faces import GIVEN, Counter, RoughPair, together
 from faying.errors import FayingError, InputError, shown
 from faying.materials import ContactPair, Material, material_of
 from faying.style import Summary
@@ -46,7 +46,7 @@ class Mates(Summary):
     levelled once; D and G are fitted where a law asks for them, and contacts are solved when a law is asked.
 
     Args:
-        face: the scan of one face; or `Faces`, where both have been put together already.
+        face: the scan of one face; or `RoughPair`, where both have been put together already.
         materials: of both faces where one is given, else of the face with the scan and of the other one: names of the
             catalogue or "rigid", `Material`, or a `ContactPair`.
         other: the other face: "same", alike but unrelated; "smooth"; or its scan.
@@ -61,14 +61,14 @@ class Mates(Summary):
     `Mates.of_fractal` and `Mates.of_fit` take D and G in place of a scan, `Mates.of_surface` other numbers.
     """
 
-    faces: Faces
+    faces: RoughPair
     pair: ContactPair
     progress: Callable[[int, int], object] | None
     _made: dict[Any, Choice] = field(compare=False)
 
     def __init__(
         self,
-        face: Scan | Profile | Faces,
+        face: Scan | Profile | RoughPair,
         *,
         materials: Materials,
         other: Counter = "same",
@@ -78,7 +78,7 @@ class Mates(Summary):
         scan_area: float | str | None = None,
         cache: str | Path | None = None,
     ) -> None:
-        if isinstance(face, Faces):
+        if isinstance(face, RoughPair):
             given = (other, method, D, G, scan_area, cache)
             if given != ("same", "psd", None, None, None, None):
                 raise InputError("these faces are put together already; give nothing but their materials")
@@ -89,7 +89,7 @@ class Mates(Summary):
 
     def _set(
         self,
-        faces: Faces,
+        faces: RoughPair,
         pair: ContactPair,
         progress: Callable[[int, int], object] | None,
         made: dict[Any, Choice],
@@ -130,7 +130,7 @@ class Mates(Summary):
             roughness = together(roughness, dimension)
         area = si(scan_area, "m^2", name="scan_area")
         numbers = FractalSurface(D=dimension, G=roughness, scan_area=area)
-        return cls(Faces(face=numbers, stated=stated), materials=materials)
+        return cls(RoughPair(face=numbers, stated=stated), materials=materials)
 
     @classmethod
     def of_surface(cls, surface: RoughSurface | FractalSurface, *, materials: Materials) -> "Mates":
@@ -150,7 +150,7 @@ class Mates(Summary):
             surface = RoughSurface(inputs=surface)
         remedy = "give FractalSurface, SurfaceInputs or RoughSurface; for a scan call Mates itself"
         made = instance(surface, RoughSurface, "surface", remedy)
-        return cls(Faces(face=made.inputs, made=made), materials=materials)
+        return cls(RoughPair(face=made.inputs, made=made), materials=materials)
 
     @classmethod
     def of_fit(cls, fit: FractalFit, *, scan_area: float | str, materials: Materials, of: str = ONE) -> "Mates":
@@ -378,7 +378,7 @@ def pair_of(materials: object) -> ContactPair:
     return ContactPair(one, one)
 
 
-def line_of(faces: Faces, pair: ContactPair) -> str:
+def line_of(faces: RoughPair, pair: ContactPair) -> str:
     """Both faces and both materials in one line, for commands and notes."""
     return f"{faces.words}; {pair.first.name} on {pair.second.name}"
 
@@ -400,7 +400,7 @@ def read_entries(kind: LawKind, given: Mapping[str, object]) -> dict[str, object
     return out
 
 
-def _faces(face: object, **given: Any) -> Faces:
+def _faces(face: object, **given: Any) -> RoughPair:
     """Faces from what a user gives, text with units read."""
     for name, unit in (("G", "m"), ("scan_area", "m^2")):
         if given[name] is not None:
@@ -411,7 +411,7 @@ def _faces(face: object, **given: Any) -> Faces:
     if cache is not None and not isinstance(cache, str | Path):
         raise InputError(f"cache = {shown(cache)}; give the folder as text or a Path")
     other = given.pop("other")
-    return Faces(face=face, counter=other, cache=None if cache is None else Path(cache), **given)  # type: ignore[arg-type]
+    return RoughPair(face=face, counter=other, cache=None if cache is None else Path(cache), **given)  # type: ignore[arg-type]
 
 
 def _watched(surface: RoughSurface, progress: Callable[[int, int], object]) -> RoughSurface:

@@ -12,7 +12,7 @@ from faying.contact.inputs import FractalSurface
 from faying.contact.law import ContactLaw
 from faying.contact.mates import Mates
 from faying.contact.models.half_space import HalfSpace
-from faying.contact.two_faces import Counter, Faces
+from faying.contact.two_faces import Counter, RoughPair
 from faying.errors import FayingError, InputError
 from faying.halfspace.solve import halved_map
 from faying.surface.form import prepared
@@ -97,7 +97,7 @@ def _part(mates: Mates, name: str) -> Mates:
         raise InputError("too few points")
     numbers = faces if faces.made is None else faces.made.inputs
     area = None if numbers.scan_area is None else share**2 * numbers.scan_area
-    part = Faces(
+    part = RoughPair(
         face=one, counter=other, method=faces.method, D=numbers.D, G=numbers.G, scan_area=area, cache=faces.cache
     )
     return Mates(part, materials=mates.pair)

@@ -26,7 +26,7 @@ GIVEN = "as given"
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Faces:
+class RoughPair:
     """Two faces as one rough surface. What nobody asks for is not computed; what was asked for is not computed again.
 
     A line scan stands for the isotropic surface that it is cut from: D is that of the line plus 1, and G is that of the
@@ -168,7 +168,7 @@ class Faces:
         factor = fit.surface_G / fit.G
         return (f"G is {factor:.3g} times that of the line, which counts as a cut through an isotropic surface",)
 
-    def with_numbers(self, **changes: float) -> "Faces":
+    def with_numbers(self, **changes: float) -> "RoughPair":
         """The same faces with some of D, G [m] and scan_area [m2] of both together changed; nothing is fitted anew."""
         out = replace(self, made=replace(self.rough, inputs=replace(self.rough.inputs, **changes)))
         out.__dict__["_fitted"] = self._fitted
@@ -190,9 +190,9 @@ def together(G: float, D: float, factor: float = 2.0) -> float:
     return float(max(G * factor ** (1 / (2 * D - 4)), LEAST_G))
 
 
-def faces_of(scan: Scan | Profile, counter: Counter = "same", **options: Any) -> Faces:
-    """Return both faces of a joint from the scan of one and what the other is; options: those of `Faces`."""
-    return Faces(face=scan, counter=counter, **options)
+def faces_of(scan: Scan | Profile, counter: Counter = "same", **options: Any) -> RoughPair:
+    """Return both faces of a joint from the scan of one and what the other is; options: those of `RoughPair`."""
+    return RoughPair(face=scan, counter=counter, **options)
 
 
 def _numbers(ready: Prepared, fractal: dict[str, float]) -> SurfaceInputs:

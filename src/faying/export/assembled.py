@@ -37,12 +37,12 @@ class Assembled:
         structure = build(study)
         assembly = structure.assembly(solver=study.modes.solver)
         found = checked_preload(structure, assembly, study.preloads[0])
-        stiffness, _ = structure.joined(structure.springs(found.pressures))
+        stiffness, _ = structure.coupled(structure.springs(found.pressures))
         numbers = structure.mesh.numbers
         dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])
         return cls(
             stiffness=stiffness,
-            mass=structure.vibrating[1],
+            mass=structure.dynamic_matrices[1],
             dofs=dofs,
             still=structure.rigid_count,
             shift_frequency=study.modes.shift_frequency or structure.shift_frequency,

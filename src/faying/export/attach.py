@@ -260,7 +260,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
         raise InputError(f"the study has the preloads {known}; say which with --preload")
     number = preload_index(loads, preload)
     structure = structure_of(study, mesh, surfaces_of(study))
-    settled = checked_preload(
+    solved_preload = checked_preload(
         structure,
         structure.assembly(solver=study.modes.solver),
         study.preloads[number],
@@ -268,7 +268,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
     return (
         structure.joints[place].law,
-        settled.pressures[place],
+        solved_preload.pressures[place],
         f"of the study's bolts at {units.show(loads[number], 'N')}",
     )
 

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.case.case import Case, Progress
-from faying.case.preloads import settled
+from faying.case.preloads import solved_preload
 from faying.decks.deck import CondensedDeck
 from faying.decks.system import UnitSystem
 from faying.errors import InputError
@@ -156,7 +156,7 @@ def condense(
     problem = structure.assembly(solver=study.modes.solver)
     for k in range(index + 1):
         progress.begin(f"preload {study.preloads[k].name}")
-        state = settled(case, k, problem)
+        state = solved_preload(case, k, problem)
     springs = structure.springs(state.pressures)
     progress.begin("modes")
     modes, *_ = modes_of(case.modal, springs)
@@ -170,7 +170,7 @@ def condense(
         """Frequencies and loss factors of these modes with the joint condensed; NaN where none is like them."""
         progress.begin(f"modes with {tie} ties")
         other = condensed_modes(structure, springs, number, elastic.stop + COUNTED, tie=tie, solver=study.modes.solver)
-        at = _partners(shapes, other.shapes, structure.vibrating[1])
+        at = _partners(shapes, other.shapes, structure.dynamic_matrices[1])
         found, loss = (np.where(at < 0, np.nan, values[at]) for values in (other.frequencies, other.loss_factors))
         return found, loss
 

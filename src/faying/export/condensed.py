@@ -148,7 +148,7 @@ def condensed_modes(
     """
     joint = CondensedJoint.of(springs[number])
     others = [s.stiffness() for k, s in enumerate(springs) if k != number]
-    K, M = structure.vibrating
+    K, M = structure.dynamic_matrices
     for other in others:
         K = K + constrain(other, structure.fixed, 0.0)
     if tie == "rigid":

@@ -37,7 +37,7 @@ class Fit(Recorded):
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Seen(Recorded):
+class Identifiability(Recorded):
     """Singular values and right vectors of the sensitivity, in units of the scatter and of the priors' sd.
 
     A combination with the singular value s has the posterior sd 1/sqrt(1 + s^2) of its prior sd, for a linear model.
@@ -50,7 +50,7 @@ class Seen(Recorded):
     )
 
     @property
-    def told(self) -> Array:
+    def posterior_contraction(self) -> Array:
         """Posterior over prior sd of each combination, for a linear model."""
         return np.asarray(1 / np.sqrt(1 + self.values**2))
 
@@ -66,8 +66,8 @@ class Seen(Recorded):
     @property
     def text(self) -> str:
         """What the test sees and what it does not, in a sentence or two."""
-        seen = self._listed(np.flatnonzero(self.told < SEEN))
-        unseen = self._listed(np.flatnonzero(self.told > UNSEEN)[::-1])
+        seen = self._listed(np.flatnonzero(self.posterior_contraction < SEEN))
+        unseen = self._listed(np.flatnonzero(self.posterior_contraction > UNSEEN)[::-1])
         first = f"The test identifies {seen}." if seen else "The test identifies none of the parameters."
         return f"{first} It does not identify {unseen}." if unseen else first
 
@@ -115,7 +115,9 @@ def least_squares_ends(emulator: Emulator, test: Array, used: Mask, scatter: Arr
     return np.concatenate([values(x) for x in ends])
 
 
-def what_is_seen(emulator: Emulator, at: Array, used: Mask, noise: tuple[Array, Array], names: tuple[str, ...]) -> Seen:
+def identifiability(
+    emulator: Emulator, at: Array, used: Mask, noise: tuple[Array, Array], names: tuple[str, ...]
+) -> Identifiability:
     """Singular values of the sensitivity at values (d,), with scatter, surrogate error and offsets as noise.
 
     Args:
@@ -137,4 +139,4 @@ def what_is_seen(emulator: Emulator, at: Array, used: Mask, noise: tuple[Array, 
     _, values, vectors = np.linalg.svd(np.concatenate(rows), full_matrices=True)
     padded = np.zeros(len(names))
     padded[: len(values)] = values
-    return Seen(names=names, values=padded, vectors=vectors)
+    return Identifiability(names=names, values=padded, vectors=vectors)

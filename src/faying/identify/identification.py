@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.distribution import Distribution
 from faying.errors import ReadError
-from faying.identify.fit import Fit, Seen
+from faying.identify.fit import Fit, Identifiability
 from faying.misuse import checked_call
 from faying.netcdf import Group, Variable
 from faying.notes import Note
@@ -83,7 +83,7 @@ class Identification(Recorded):
         "load", "mode", unit="1", long_name="surrogate less model at points of the posterior, rms", gaps=True
     )
     fit: Fit
-    singular: Seen
+    singular: Identifiability
     notes: tuple[Note, ...] = ()
     laws: tuple[LawEvidence, ...] = ()
     losses: Array | None = variable(
@@ -102,7 +102,7 @@ class Identification(Recorded):
         head = f"Identification: {len(self.names)} parameters from {used} measured frequencies; `.table()` has all"
         rows = {"parameters": "5 % | 50 % | 95 %, sd over that of the prior"}
         shown = len(self.names) if len(self.names) <= MOST_PARAMETERS else MOST_PARAMETERS - 1
-        columns = zip(self.names[:shown], self.units, self.quantiles().T, self.told, strict=False)
+        columns = zip(self.names[:shown], self.units, self.quantiles().T, self.posterior_contraction, strict=False)
         for name, unit, row, share in columns:
             cells = " | ".join(show(v, unit) if unit else f"{v:.4g}" for v in row)
             rows[name if len(name) <= 25 else f"~{name[-24:]}"] = f"{cells}, {share:.2f}"
@@ -144,7 +144,7 @@ class Identification(Recorded):
         return np.asarray(self.samples.std(axis=0, ddof=1))
 
     @property
-    def told(self) -> Array:
+    def posterior_contraction(self) -> Array:
         """Posterior over prior standard deviation (d,): near 1 where the test says nothing."""
         return np.asarray(self.sd / np.array([prior.sd for prior in self.priors]))
 
@@ -184,7 +184,9 @@ class Identification(Recorded):
 
     def _parameter_lines(self) -> list[str]:
         lines = [f"{'parameter':<26}{'5 %':>13}{'50 %':>13}{'95 %':>13}  sd/prior"]
-        for name, unit, row, told in zip(self.names, self.units, self.quantiles().T, self.told, strict=True):
+        for name, unit, row, told in zip(
+            self.names, self.units, self.quantiles().T, self.posterior_contraction, strict=True
+        ):
             cells = "".join(f"{show(v, unit) if unit else f'{v:.4g}':>13}" for v in row)
             lines.append(f"{name if len(name) <= 25 else f'~{name[-24:]}':<26}{cells}{told:>10.2f}")
         return lines
@@ -229,7 +231,7 @@ class Identification(Recorded):
                 "prior": prior.text(unit),
                 "mean": float(self.mean[k]),
                 "sd": float(self.sd[k]),
-                "told": float(self.told[k]),
+                "posterior_contraction": float(self.posterior_contraction[k]),
                 "quantiles": dict(zip(map(str, LEVELS), self.quantiles()[:, k].tolist(), strict=True)),
             }
             for k, (name, unit, prior) in enumerate(zip(self.names, self.units, self.priors, strict=True))
@@ -265,7 +267,7 @@ class Identification(Recorded):
             "singular": {
                 "values": listed(self.singular.values),
                 "vectors": listed(self.singular.vectors),
-                "told": listed(self.singular.told),
+                "posterior_contraction": listed(self.singular.posterior_contraction),
                 "text": self.singular.text,
             },
             "evaluations": self.evaluations,

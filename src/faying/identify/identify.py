@@ -9,7 +9,7 @@ import numpy as np
 from faying.distribution import Distribution
 from faying.errors import InputError
 from faying.identify import remarks
-from faying.identify.fit import Fit, least_squares_ends, what_is_seen
+from faying.identify.fit import Fit, identifiability, least_squares_ends
 from faying.identify.identification import Identification
 from faying.identify.model import Model
 from faying.identify.noise import (
@@ -362,7 +362,7 @@ def _identification(question: _Question, answer: _Answer) -> Identification:
         surrogate_error=check.error[:, :modes],
         checked=check.difference[:, :modes],
         fit=_fit(question, answer, scatter, peak),
-        singular=what_is_seen(answer.emulator, peak, question.used, (scatter, discrepancy), model.names),
+        singular=identifiability(answer.emulator, peak, question.used, (scatter, discrepancy), model.names),
         notes=notes,
     )
 

@@ -42,7 +42,7 @@ def by_name(values: Array, names: Index) -> Array:
     return np.where(names < 0, np.nan, np.take_along_axis(values, np.maximum(names, 0), axis=1))
 
 
-def settled(test: Array, rows: Rows) -> Index:
+def paired_modes(test: Array, rows: Rows) -> Index:
     """Names (t,) of the test's modes, -1 for none: as most of the samples pair them that come nearest to the test.
 
     test: frequencies [Hz] (load, t); rows: `named` (n, load, m) and `modes` (n, t), the names by which each sample

@@ -11,7 +11,7 @@ from faying.case.case import mates_notes
 from faying.errors import InputError
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
-from faying.identify.identity import paired, settled
+from faying.identify.identity import paired, paired_modes
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
 from faying.identify.predict import check, cut_notes, of_bases
 from faying.identify.sampling.ensemble import Ensemble, scattering
@@ -67,7 +67,7 @@ class StudyModel:
         test = self.ensemble.study.test
         assert test is not None
         if self.modes is None:
-            self.modes = settled(np.array(test.frequencies), rows)
+            self.modes = paired_modes(np.array(test.frequencies), rows)
         given = ["named"] if test.losses is None else ["named", "named_loss"]
         found = [paired(rows[name], self.modes) for name in given]
         return np.concatenate(found, axis=2), [str(reason) for reason in rows["reasons"]]

@@ -11,7 +11,7 @@ from faying.case.case import mates_notes
 from faying.case.provenance import provenance
 from faying.case.scatter import assumed, discrepancy
 from faying.errors import InputError
-from faying.identify.identity import paired, settled
+from faying.identify.identity import paired, paired_modes
 from faying.identify.prediction import Prediction
 from faying.identify.sampling.ensemble import Ensemble, by_reason
 from faying.identify.sampling.evaluate import LIMIT, Reduced
@@ -110,7 +110,7 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
     test = study.test
     tested: dict[str, Any] = {}
     if test is not None:
-        names = settled(np.array(test.frequencies), rows)
+        names = paired_modes(np.array(test.frequencies), rows)
         tested = {
             "paired": paired(rows["named"], names),
             "test": np.array(test.frequencies),
@@ -127,7 +127,7 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
         frequencies=rows["frequencies"],
         loss_factors=rows["loss_factors"],
         open_share=rows["open_share"],
-        beyond_share=rows["beyond_share"],
+        above_range_share=rows["above_range_share"],
         reasons=dict(by_reason(reasons)),
         discrepancy=discrepancy(study.uncertain or UncertainChoice()),
         provenance=provenance(study),
@@ -148,7 +148,7 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
             "width; take more samples"
         )
         out.append(Note(code="few-samples", text=text))
-    far = int(np.count_nonzero(np.nanmax(found.beyond_share[found.sound], axis=1) > BEYOND))
+    far = int(np.count_nonzero(np.nanmax(found.above_range_share[found.sound], axis=1) > BEYOND))
     if far:
         text = (
             f"{far} of {found.answered} samples press more than a tenth of the contact above the end of the law, "

@@ -110,7 +110,7 @@ class Prediction(Recorded):
     open_share: Array = variable(
         "sample", "load", unit="1", long_name="share of the joints that is open", gaps=True, group="samples"
     )
-    beyond_share: Array = variable(
+    above_range_share: Array = variable(
         "sample",
         "load",
         unit="1",

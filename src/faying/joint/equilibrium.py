@@ -102,7 +102,7 @@ class Equilibrium(ABC):
         self.parts = self.stiffness = stiffness
         self.joints = list(joints)
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
-        self._anchors = [np.zeros((len(trace.weights), 2)) for trace, _ in self.joints]
+        self._anchors = [np.zeros((len(interface.weights), 2)) for interface, _ in self.joints]
         self._past: list[tuple[float, Array]] = []  # size [N] of multiples of one load, and displacements under them
         self._pattern: Array | None = None  # that load, of size 1
         self._known: dict[int, tuple[Array, list[tuple[Array, Array, Array]]]] = {}
@@ -115,14 +115,16 @@ class Equilibrium(ABC):
         """Return a displacement to start from."""
 
     @abstractmethod
-    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> Steps[tuple[Array, int]]:
+    def _direction(
+        self, u: Array, force: Array, slip_states: list[StickSlip], accuracy: float
+    ) -> Steps[tuple[Array, int]]:
         """Return the Newton step for an out-of-balance force and how many inner steps it took."""
 
     @abstractmethod
     def _near(self, forces: Array) -> Array:
         """Displacements near the answer to forces (unknowns,) or (unknowns, m), for which the steps of a load ask."""
 
-    def _walked(self, steps: Steps[Found]) -> Found:
+    def _run_steps(self, steps: Steps[Found]) -> Found:
         """What steps return that nobody else goes with."""
         try:
             force = next(steps)
@@ -163,15 +165,15 @@ class Equilibrium(ABC):
         self._check_load(load)
         self.stiffness = self.parts if shanks is None else self.parts + shanks
         if start is None:
-            start = self._ahead(load) if self._past else self._start(load)
+            start = self._extrapolated(load) if self._past else self._start(load)
         newton = Newton(self, load, tolerance, report)
-        u, grips = self._walked(newton.run(start, steps))
+        u, slip_states = self._run_steps(newton.run(start, steps))
         self._remember(load, u, alone=shanks is None)
-        return self._settled(newton, u, grips)
+        return self._preload_state(newton, u, slip_states)
 
-    def _settled(self, newton: "Newton", u: Array, grips: list[StickSlip]) -> PreloadState:
+    def _preload_state(self, newton: "Newton", u: Array, slip_states: list[StickSlip]) -> PreloadState:
         """The state that a load has led to; shear that slipped is carried to the next."""
-        slipping = self._move_anchors(u, grips)
+        slipping = self._move_anchors(u, slip_states)
         openings, pressures = self.contact(u)
         return PreloadState(
             pressures=pressures,
@@ -184,7 +186,7 @@ class Equilibrium(ABC):
             factorisations=self.factorisations,
         )
 
-    def _ahead(self, load: Array) -> Array:
+    def _extrapolated(self, load: Array) -> Array:
         """Displacement to start from: the last one, or what leads on from the last few, whichever is nearer to balance.
 
         Those under multiples of one load lie on a smooth curve, through which polynomials go.
@@ -193,8 +195,8 @@ class Equilibrium(ABC):
         size = float(np.linalg.norm(load))
         if self._pattern is None or np.linalg.norm(load / size - self._pattern) > ALIKE:
             return last
-        choices = [last, *(_led_on(self._past[-k:], size) for k in range(2, len(self._past) + 1))]
-        left = [np.linalg.norm(self._out_of_balance(u, load, self._grips(u))) for u in choices]
+        choices = [last, *(_through_last(self._past[-k:], size) for k in range(2, len(self._past) + 1))]
+        left = [np.linalg.norm(self._out_of_balance(u, load, self._stick_slip(u))) for u in choices]
         return choices[int(np.argmin(left))]
 
     def _remember(self, load: Array, u: Array, *, alone: bool) -> None:
@@ -207,22 +209,24 @@ class Equilibrium(ABC):
         self._pattern = pattern
         self._past = [*(one for one in self._past if one[0] != size), (size, u)][-STATES:]
 
-    def _move_anchors(self, u: Array, grips: list[StickSlip]) -> tuple[float, ...]:
+    def _move_anchors(self, u: Array, slip_states: list[StickSlip]) -> tuple[float, ...]:
         """Carry the shear that is left to the next load; return the share of the sliding area of each joint."""
         slipping = []
-        for index, ((move, p, _), grip, (trace, _)) in enumerate(zip(self._state(u), grips, self.joints, strict=True)):
-            slides = grip.sliding(move[:, 1:])
-            slipping.append(float(trace.weights @ slides / trace.weights.sum()))
+        for index, ((move, p, _), slip_state, (interface, _)) in enumerate(
+            zip(self._state(u), slip_states, self.joints, strict=True)
+        ):
+            slides = slip_state.sliding(move[:, 1:])
+            slipping.append(float(interface.weights @ slides / interface.weights.sum()))
             if np.any(slides):  # the shear that is left stays until the next load moves on
-                rest = grip.shear(move[:, 1:]) / np.where(grip.k_t > 0, grip.k_t, 1.0)[:, None]
+                rest = slip_state.shear(move[:, 1:]) / np.where(slip_state.k_t > 0, slip_state.k_t, 1.0)[:, None]
                 self._anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self._anchors[index])
-            if grip.limit is not None:  # what moves while it is open starts without shear when it closes
+            if slip_state.limit is not None:  # what moves while it is open starts without shear when it closes
                 self._anchors[index] = np.where((p > 0)[:, None], self._anchors[index], move[:, 1:])
         return tuple(slipping)
 
     def contact(self, u: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Openings [m] and pressures [Pa] at the points of every joint under displacements [m] (unknowns,)."""
-        openings = tuple(self._move(trace, u)[:, 0] + trace.gap for trace, _ in self.joints)
+        openings = tuple(self._move(interface, u)[:, 0] + interface.gap for interface, _ in self.joints)
         return openings, tuple(law.pressure(-gap)[0] for gap, (_, law) in zip(openings, self.joints, strict=True))
 
     def _rounding(self, u: Array) -> float:
@@ -232,8 +236,8 @@ class Equilibrium(ABC):
         """
         return float(2 * np.finfo(float).eps * np.linalg.norm(product_of_sizes(self.stiffness, u)))
 
-    def _move(self, trace: InterfaceMotion, u: Array) -> Array:
-        return np.asarray(trace.relative @ u).reshape(-1, 3)
+    def _move(self, interface: InterfaceMotion, u: Array) -> Array:
+        return np.asarray(interface.relative @ u).reshape(-1, 3)
 
     def _state(self, u: Array) -> list[tuple[Array, Array, Array]]:
         """Relative motion (q, 3), pressure and k_n (q,) of each joint.
@@ -242,17 +246,17 @@ class Equilibrium(ABC):
         """
         known = self._known.get(id(u))
         if known is None or known[0] is not u:
-            moves = [self._move(trace, u) for trace, _ in self.joints]
-            known = self._keep(
+            moves = [self._move(interface, u) for interface, _ in self.joints]
+            known = self._remember_joints(
                 u,
                 [
-                    (move, *law.pressure(-(move[:, 0] + trace.gap)))
-                    for move, (trace, law) in zip(moves, self.joints, strict=True)
+                    (move, *law.pressure(-(move[:, 0] + interface.gap)))
+                    for move, (interface, law) in zip(moves, self.joints, strict=True)
                 ],
             )
         return known[1]
 
-    def _keep(
+    def _remember_joints(
         self, u: Array, state: list[tuple[Array, Array, Array]]
     ) -> tuple[Array, list[tuple[Array, Array, Array]]]:
         """Remember the state of the joints under a displacement, and forget the oldest."""
@@ -262,31 +266,33 @@ class Equilibrium(ABC):
         self._known[id(u)] = u, state
         return u, state
 
-    def _grips(self, u: Array) -> list[StickSlip]:
-        grips = []
+    def _stick_slip(self, u: Array) -> list[StickSlip]:
+        slip_states = []
         for (_, p, _), (_, law), friction, anchor in zip(
             self._state(u), self.joints, self.friction, self._anchors, strict=True
         ):
-            grips.append(
+            slip_states.append(
                 StickSlip(k_t=law.stiffness(p)[1], limit=None if friction is None else friction * p, anchor=anchor)
             )
-        return grips
+        return slip_states
 
-    def _out_of_balance(self, u: Array, load: Array, grips: list[StickSlip]) -> Array:
+    def _out_of_balance(self, u: Array, load: Array, slip_states: list[StickSlip]) -> Array:
         force = load - self.stiffness @ u
-        for (move, p, _), (trace, _), grip in zip(self._state(u), self.joints, grips, strict=True):
-            local = np.concatenate([-p[:, None], grip.shear(move[:, 1:])], axis=1) * trace.weights[:, None]
-            force = force - trace.relative.T @ local.ravel()
+        for (move, p, _), (interface, _), slip_state in zip(self._state(u), self.joints, slip_states, strict=True):
+            local = np.concatenate([-p[:, None], slip_state.shear(move[:, 1:])], axis=1) * interface.weights[:, None]
+            force = force - interface.relative.T @ local.ravel()
         return self._admissible(np.asarray(force))
 
-    def _tangents(self, u: Array, grips: list[StickSlip]) -> list[tuple[Any, Array, Array]]:
+    def _tangents(self, u: Array, slip_states: list[StickSlip]) -> list[tuple[Any, Array, Array]]:
         """For each joint: trace, normal stiffness (q,) and tangential tangent (q, 2, 2), both times the area."""
         out = []
-        for (move, _, k_n), (trace, _), grip in zip(self._state(u), self.joints, grips, strict=True):
-            out.append((trace, trace.weights * k_n, trace.weights[:, None, None] * grip.tangent(move[:, 1:])))
+        for (move, _, k_n), (interface, _), slip_state in zip(self._state(u), self.joints, slip_states, strict=True):
+            out.append(
+                (interface, interface.weights * k_n, interface.weights[:, None, None] * slip_state.tangent(move[:, 1:]))
+            )
         return out
 
-    def _line_search(self, u: Array, step: Array, load: Array, grips: list[StickSlip]) -> Array:
+    def _line_search(self, u: Array, step: Array, load: Array, slip_states: list[StickSlip]) -> Array:
         """The displacement along a step at which the slope of the energy has fallen to a fraction.
 
         The energy is convex along the line. The state of the joints there is kept where the search ends at it.
@@ -296,31 +302,33 @@ class Equilibrium(ABC):
         def at(length: float, *, known: bool = True) -> Array:
             found = np.asarray(u + length * step)
             if known:
-                self._keep(found, ahead)
+                self._remember_joints(found, ahead)
             return found
 
         stretch = self.stiffness @ step
         linear = float(step @ (load - self.stiffness @ u))
         quadratic = float(step @ stretch)
-        local = [self._move(trace, step) for trace, _ in self.joints]
+        local = [self._move(interface, step) for interface, _ in self.joints]
         here = self._state(u)
 
         def slope(length: float) -> float:
             nonlocal ahead
             total, ahead = length * quadratic - linear, []
-            for (trace, law), by, (move, p, k_n), grip in zip(self.joints, local, here, grips, strict=True):
+            for (interface, law), by, (move, p, k_n), slip_state in zip(
+                self.joints, local, here, slip_states, strict=True
+            ):
                 if length:
                     move = move + length * by
-                    p, k_n = law.pressure(-(trace.gap + move[:, 0]))
+                    p, k_n = law.pressure(-(interface.gap + move[:, 0]))
                 ahead.append((move, p, k_n))
-                shear = grip.shear(move[:, 1:])
+                shear = slip_state.shear(move[:, 1:])
                 work = -p * by[:, 0] + np.einsum("qi,qi->q", shear, by[:, 1:])
-                total += float(trace.weights @ work)
+                total += float(interface.weights @ work)
             return total
 
         start = slope(0.0)
         if start >= 0:
-            apart = min(float(trace.gap.min()) for trace, _ in self.joints)
+            apart = min(float(interface.gap.min()) for interface, _ in self.joints)
             raise NotConverged(
                 "preload: the search direction does not lower the energy; a joint may be fully open (before any load "
                 f"the nearest faces are {apart * 1e6:.4g} um apart): put the faces on each other, or pull harder"
@@ -384,9 +392,9 @@ class Newton:
         balance, load = self.balance, self.load
         scale = float(np.linalg.norm(load))
         least, tolerance, rounding = np.inf, self.tolerance, None
-        grips = balance._grips(u)
+        slip_states = balance._stick_slip(u)
         while True:
-            force = balance._out_of_balance(u, load, grips)
+            force = balance._out_of_balance(u, load, slip_states)
             self.size = float(np.linalg.norm(force)) / scale
             if self.size < least:
                 least, balance.nearest = self.size, u
@@ -394,12 +402,12 @@ class Newton:
                 rounding = balance._rounding(u) / scale  # u hardly moves from here on
                 tolerance = max(tolerance, rounding)
             if self.size < tolerance:
-                fresh = balance._grips(u)
-                change = max(_grip_change(new, old) for new, old in zip(fresh, grips, strict=True))
-                grips = fresh
-                self.size = float(np.linalg.norm(balance._out_of_balance(u, load, grips))) / scale
+                fresh = balance._stick_slip(u)
+                change = max(_slip_change(new, old) for new, old in zip(fresh, slip_states, strict=True))
+                slip_states = fresh
+                self.size = float(np.linalg.norm(balance._out_of_balance(u, load, slip_states))) / scale
                 if self.size < tolerance or change < 1e-12:
-                    return u, grips
+                    return u, slip_states
                 continue
             if self.steps >= most:
                 raise NotConverged(
@@ -408,16 +416,16 @@ class Newton:
                 )
             # as exact as Newton's own convergence asks, and no more than the tolerance does
             accuracy = max(min(FAR_OFF, 0.1 * self.size), 0.3 * tolerance / self.size)
-            step, count = yield from balance._direction(u, force, grips, accuracy=accuracy)
-            u = balance._line_search(u, step, load, grips)
+            step, count = yield from balance._direction(u, force, slip_states, accuracy=accuracy)
+            u = balance._line_search(u, step, load, slip_states)
             if self.size > SETTLED:  # far off, k_t follows at once; near the end it is kept so that Newton converges
-                grips = balance._grips(u)
+                slip_states = balance._stick_slip(u)
             self.steps, self.inner = self.steps + 1, self.inner + count
             if self.report:
                 self.report(f"Newton {self.steps}: imbalance {self.size:.1e}, {count} inner steps")
 
 
-def _led_on(past: Sequence[tuple[float, Array]], size: float) -> Array:
+def _through_last(past: Sequence[tuple[float, Array]], size: float) -> Array:
     """Lagrange's polynomial through displacements under loads of some sizes, at another size."""
     sizes = np.array([one for one, _ in past])
     out = np.zeros_like(past[0][1])
@@ -427,7 +435,7 @@ def _led_on(past: Sequence[tuple[float, Array]], size: float) -> Array:
     return out
 
 
-def _grip_change(new: StickSlip, old: StickSlip) -> float:
+def _slip_change(new: StickSlip, old: StickSlip) -> float:
     change = _relative_change(new.k_t, old.k_t)
     if new.limit is not None and old.limit is not None:
         change = max(change, _relative_change(new.limit, old.limit))

@@ -220,7 +220,7 @@ class FittedJoint:
             out.append(Note(code="no-loss", joint=self.name, text=text))
         return tuple(out)
 
-    def past_end(self, springs: Springs[Interface]) -> Mask:
+    def above_range(self, springs: Springs[Interface]) -> Mask:
         """Points of its springs (q,) whose pressure is beyond the end of the law, as the law is asked."""
         pressure = springs.pressure
         if self.per_node:

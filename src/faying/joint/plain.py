@@ -42,7 +42,7 @@ class PlainPreload(Equilibrium):
         super().__init__(stiffness, joints, friction=friction)
         self.solver, self._fixed = solver, fixed
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
-        self._held = np.union1d(fixed, _holding(rigid))
+        self._clear_fixed = np.union1d(fixed, _holding(rigid))
 
     def _check_load(self, load: Array) -> None:
         check_balance(load, self._rigid)
@@ -59,11 +59,13 @@ class PlainPreload(Equilibrium):
             push = push + joint.forces(offset, np.zeros((len(offset), 2)))
         return self._solved(stiffness, push)
 
-    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> Steps[tuple[Array, int]]:
+    def _direction(
+        self, u: Array, force: Array, slip_states: list[StickSlip], accuracy: float
+    ) -> Steps[tuple[Array, int]]:
         from scipy.sparse import block_diag
 
         stiffness = self.stiffness
-        for interface, k_n, k_t in self._tangents(u, grips):
+        for interface, k_n, k_t in self._tangents(u, slip_states):
             local = np.zeros((len(k_n), 3, 3))
             local[:, 0, 0], local[:, 1:, 1:] = k_n, k_t
             stiffness = stiffness + interface.relative.T @ block_diag(local, format="csr") @ interface.relative
@@ -78,8 +80,8 @@ class PlainPreload(Equilibrium):
 
     def _solved(self, stiffness: Any, force: Array) -> Array:
         right = self._admissible(force).copy()
-        right[self._held] = 0.0
-        return factorise(constrain(stiffness, self._held).tocsr(), self.solver).solve(right)
+        right[self._clear_fixed] = 0.0
+        return factorise(constrain(stiffness, self._clear_fixed).tocsr(), self.solver).solve(right)
 
 
 def _holding(rigid: Array) -> Index:

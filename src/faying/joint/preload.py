@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.fe.corners import Corners
 from faying.fe.interface import Motion
+from faying.fe.vertices import VertexRestriction
 from faying.joint.equilibrium import (
     MOST_STEPS,
     Equilibrium,
@@ -54,7 +54,7 @@ class PreloadProblem(Equilibrium):
     """Parts with joints between them, ready for one load after another (each starts from the last).
 
     fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do;
-    corners: those of the mesh, for whoever has one to set: their own equilibrium says which springs to factorise with;
+    vertices: those of the mesh, for whoever has one to set: their own equilibrium says which springs to factorise with;
     without them, springs at one pressure for each joint. sprung: springs per area (k_n, k_t) [Pa/m] of each joint in
     the factorisation at hand, where they are near to those under the load; None where they are not.
     """
@@ -79,20 +79,20 @@ class PreloadProblem(Equilibrium):
         self.mass = mass
         self._mass, self._shift = constrain(mass, self.fixed, 0.0), (2 * np.pi * shift_frequency) ** 2
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
-        self.corners: Corners | None = None
+        self.vertices: VertexRestriction | None = None
         self.factor: Factorisation | None = None
-        self.sprung: list[tuple[Array, Array]] | None = None
+        self.factorised_springs: list[tuple[Array, Array]] | None = None
         self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation
         self._scale = 1.0
 
-    def take(self, factor: Factorisation, shift_frequency: float) -> None:
+    def adopt_factor(self, factor: Factorisation, shift_frequency: float) -> None:
         """Go on with the factorisation of a like state in place of its own: that of the modes under the last load.
 
         Springs that are nearer to those of the next load save half of the conjugate-gradient steps, and one
         factorisation less is held. One that was shifted further, by this frequency [Hz], is left.
         """
         if shift_frequency <= self.shift_frequency:
-            self.factor, self.sprung, self._rate = factor, None, 0.0
+            self.factor, self.factorised_springs, self._rate = factor, None, 0.0
 
     def _check_load(self, load: Array) -> None:
         self._scale = float(np.linalg.norm(load))
@@ -105,7 +105,7 @@ class PreloadProblem(Equilibrium):
         No joint slips, a factorisation serves for more than one of them, and none was taken that is of something else:
         that is far from all of them, and better replaced after the first.
         """
-        taken = self.factor is not None and self.sprung is None
+        taken = self.factor is not None and self.factorised_springs is None
         return not (self._cheap or taken) and all(friction is None for friction in self.friction)
 
     def solve_together(self, loads: Sequence[Array], *, tolerance: float) -> list[PreloadState | None]:
@@ -120,10 +120,10 @@ class PreloadProblem(Equilibrium):
         for load in loads:
             self._check_load(load)
         self.stiffness, self._at_hand = self.parts, 2 * len(loads)
-        walks = [self._whole(*one, tolerance) for one in zip(loads, self._guesses(loads), strict=True)]
+        runs = [self._solve_steps(*one, tolerance) for one in zip(loads, self._guesses(loads), strict=True)]
         order = np.argsort([np.linalg.norm(load) for load in loads])
         try:
-            found = self._in_step(walks, int(order[(len(loads) - 1) // 2]))
+            found = self._in_step(runs, int(order[(len(loads) - 1) // 2]))
         finally:
             self._at_hand = 1
         for load, state in zip(loads, found, strict=True):
@@ -131,18 +131,18 @@ class PreloadProblem(Equilibrium):
                 self._remember(load, state.displacement, alone=True)
         return found
 
-    def _in_step(self, walks: Sequence[Steps[PreloadState]], first: int) -> list[PreloadState | None]:
+    def _in_step(self, runs: Sequence[Steps[PreloadState]], first: int) -> list[PreloadState | None]:
         """What steps return that are answered together; None where they end in NotConverged.
 
         first: who begins, and so chooses the springs to factorise with.
         """
-        found: list[PreloadState | None] = [None] * len(walks)
-        answers: dict[int, Array | None] = dict.fromkeys([first, *range(len(walks))])
+        found: list[PreloadState | None] = [None] * len(runs)
+        answers: dict[int, Array | None] = dict.fromkeys([first, *range(len(runs))])
         while answers:
             asked = {}
             for k, answer in answers.items():
                 try:
-                    asked[k] = next(walks[k]) if answer is None else walks[k].send(answer)
+                    asked[k] = next(runs[k]) if answer is None else runs[k].send(answer)
                 except StopIteration as end:
                     found[k] = end.value
                 except NotConverged:
@@ -151,18 +151,18 @@ class PreloadProblem(Equilibrium):
             answers = dict(zip(asked, map(np.ascontiguousarray, columns.T), strict=True))
         return found
 
-    def _whole(self, load: Array, guess: Guess, tolerance: float) -> Steps[PreloadState]:
+    def _solve_steps(self, load: Array, guess: Guess, tolerance: float) -> Steps[PreloadState]:
         """From a guess of the joints to equilibrium under a load, with the factorisation as it is."""
-        start = yield from self._begun(load, guess)
+        start = yield from self._initial_guess(load, guess)
         newton = Newton(self, load, tolerance, None)
-        u, grips = yield from newton.run(start, MOST_STEPS)
-        return self._settled(newton, u, grips)
+        u, slip_states = yield from newton.run(start, MOST_STEPS)
+        return self._preload_state(newton, u, slip_states)
 
     def _start(self, load: Array) -> Array:
         [guess] = self._guesses([load])
-        return self._walked(self._begun(load, guess))
+        return self._run_steps(self._initial_guess(load, guess))
 
-    def _begun(self, load: Array, guess: Guess) -> Steps[Array]:
+    def _initial_guess(self, load: Array, guess: Guess) -> Steps[Array]:
         """Displacement under springs that are tangent to p(approach) where the joints are likely to end up."""
         laid, springs, push = [], [], load
         for (joint, law), (opening, pressure) in zip(self.joints, guess.joints, strict=True):
@@ -177,12 +177,12 @@ class PreloadProblem(Equilibrium):
             limit = CHEAP if self._cheap else AGED
 
             def product(x: Array) -> Array:  # the sum of the matrices takes as long as several
-                return self._held(sum((one @ x for one in springs), parts @ x))
+                return self._clear_fixed(sum((one @ x for one in springs), parts @ x))
 
             found, count = yield from self._gradients(product, push, ROUGH, limit=limit)
             if count < limit:
                 return found
-            self._stay()
+            self._require_shared_factor()
         self._factorise(springs, laid if guess.near else None)
         found = yield push
         return found
@@ -193,12 +193,12 @@ class PreloadProblem(Equilibrium):
         Only the corners move by themselves, a seventh of the unknowns or less. The parts are then too stiff in bending,
         and pressures right to some tenths.
         """
-        if self.corners is None:
-            return [self._even(load) for load in loads]
-        unknowns, spread = self.corners.unknowns, self.corners.spread
+        if self.vertices is None:
+            return [self._uniform_guess(load) for load in loads]
+        unknowns, spread = self.vertices.unknowns, self.vertices.spread
         coarse = PreloadProblem(
-            self.corners.of_matrix(self.stiffness),
-            self.corners.of_matrix(self.mass),
+            self.vertices.of_matrix(self.stiffness),
+            self.vertices.of_matrix(self.mass),
             self._rigid[unknowns],
             [(joint.carried(spread), law) for joint, law in self.joints],
             shift_frequency=self.shift_frequency,
@@ -211,12 +211,12 @@ class PreloadProblem(Equilibrium):
             try:
                 found = coarse.solve(coarse._admissible(spread.T @ load), tolerance=GUESSED)
             except (NotConverged, InputError):
-                guesses.append(self._even(load))
+                guesses.append(self._uniform_guess(load))
             else:
                 guesses.append(Guess(tuple(zip(found.openings, found.pressures, strict=True)), near=True))
         return guesses
 
-    def _even(self, load: Array) -> Guess:
+    def _uniform_guess(self, load: Array) -> Guess:
         """Every joint at the mean pressure that the load would give it."""
         total, joints = float(np.abs(load).sum()) / 4, []
         for joint, law in self.joints:
@@ -224,15 +224,15 @@ class PreloadProblem(Equilibrium):
             joints.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
         return Guess(tuple(joints), near=False)
 
-    def _factorise(self, springs: list[Any], sprung: list[tuple[Array, Array]] | None) -> None:
+    def _factorise(self, springs: list[Any], factorised_springs: list[tuple[Array, Array]] | None) -> None:
         self.factor = None  # one at a time in memory
         stiffness = sum(springs, self.stiffness)
         near = Shifted(stiffness=constrain(stiffness, self.fixed), mass=self._mass, shift=self._shift)
         self.factor = factorise_roughly(near, rigid=self._rigid, solver=self.solver)
         self.factorisations += 1
-        self.sprung, self._rate = sprung, 0.0
+        self.factorised_springs, self._rate = factorised_springs, 0.0
 
-    def _held(self, force: Array) -> Array:
+    def _clear_fixed(self, force: Array) -> Array:
         """A force with nothing on the unknowns that supports fix."""
         if len(self.fixed):
             force[self.fixed] = 0.0
@@ -245,23 +245,25 @@ class PreloadProblem(Equilibrium):
         assert self.factor is not None
         return self.factor.solve(forces)
 
-    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> Steps[tuple[Array, int]]:
-        tangents = self._tangents(u, grips)
+    def _direction(
+        self, u: Array, force: Array, slip_states: list[StickSlip], accuracy: float
+    ) -> Steps[tuple[Array, int]]:
+        tangents = self._tangents(u, slip_states)
 
         def product(x: Array) -> Array:
             y = self.stiffness @ x
-            for trace, k_n, k_t in tangents:
-                move = self._move(trace, x)
+            for interface, k_n, k_t in tangents:
+                move = self._move(interface, x)
                 local = np.concatenate([k_n[:, None] * move[:, :1], np.einsum("qij,qj->qi", k_t, move[:, 1:])], axis=1)
-                y = y + trace.relative.T @ local.ravel()
-            return self._held(y)
+                y = y + interface.relative.T @ local.ravel()
+            return self._clear_fixed(y)
 
-        if self.factor is None or self._worn(force):
+        if self.factor is None or self._refactorisation_pays(force):
             self._renew(tangents)
         x, count = yield from self._gradients(product, force, accuracy)
         self._rate = count / -np.log10(accuracy)
         if count >= AGED:
-            self._stay()
+            self._require_shared_factor()
             self._renew(tangents)
             x, more = yield from self._gradients(product, force, accuracy, limit=400)
             count += more
@@ -272,12 +274,12 @@ class PreloadProblem(Equilibrium):
         """Whether several loads go by the same factorisation."""
         return self._at_hand > 1
 
-    def _stay(self) -> None:
+    def _require_shared_factor(self) -> None:
         """Raise NotConverged where others need the factorisation as it is."""
         if self._together:
             raise NotConverged("preload: the factorisation that several loads share is too far from one of them")
 
-    def _worn(self, force: Array) -> bool:
+    def _refactorisation_pays(self, force: Array) -> bool:
         """Whether a new factorisation costs less than the conjugate-gradient steps that the old one still asks for."""
         if self._together:
             return False

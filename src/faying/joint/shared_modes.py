@@ -5,15 +5,15 @@ from typing import Any
 
 from faying.errors import NotConverged
 from faying.fe.interface import Interface
-from faying.joint.frame import added
+from faying.joint.assembled_parts import added
 from faying.joint.modal import SPARE_MODES, ModalProblem
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.numerics.changed import UpdatedStiffness, whole
 from faying.numerics.constraint import constrain
 from faying.numerics.memory import check_modes
+from faying.numerics.modal_reanalysis import ModalReanalysis, near_factor, refined_modes
 from faying.numerics.modes import Modes, lowest_modes
-from faying.numerics.nearby import NearbyModes, near_factor, refined_modes
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
 from faying.numerics.solve import Factoriser
@@ -31,13 +31,13 @@ def modes_of(
 
     count: rigid motions included; those of the problem where None.
     """
-    stiffness, loss = joined(problem, springs)
-    return modes_with(problem, stiffness, problem.structure.vibrating[1], count), stiffness, loss
+    stiffness, loss = coupled(problem, springs)
+    return modes_with(problem, stiffness, problem.structure.dynamic_matrices[1], count), stiffness, loss
 
 
-def joined(problem: ModalProblem, springs: Sequence[Springs[Interface]]) -> tuple[Any, Any]:
+def coupled(problem: ModalProblem, springs: Sequence[Springs[Interface]]) -> tuple[Any, Any]:
     """Stiffness of a structure with springs on its joints, and their loss, hysteretic or viscous as asked."""
-    return problem.structure.joined(springs, viscous=problem.choice.damping == "viscous")
+    return problem.structure.coupled(springs, viscous=problem.choice.damping == "viscous")
 
 
 class SharedModes:
@@ -48,7 +48,7 @@ class SharedModes:
     """
 
     def __init__(self) -> None:
-        self.near: NearbyModes | None = None  # where the modes were found last
+        self.near: ModalReanalysis | None = None  # where the modes were found last
         self._sprung: Any = None  # stiffness [N/m] of the springs in that of its basis
 
     def begin(self, problem: ModalProblem, preload: PreloadProblem) -> None:
@@ -57,15 +57,15 @@ class SharedModes:
         It must be of what vibrates: bolts that have a stiffness or a mass of their own are not in it.
         """
         structure, factor = problem.structure, preload.factor
-        alike = structure.is_bare and preload.shift_frequency == problem.shift_frequency
-        if self.near is not None or preload.sprung is None or factor is None or not alike:
+        alike = structure.is_parts_only and preload.shift_frequency == problem.shift_frequency
+        if self.near is not None or preload.factorised_springs is None or factor is None or not alike:
             return
         laid = [
             constrain(j.interface.springs(*k), structure.fixed, 0.0)
-            for j, k in zip(structure.joints, preload.sprung, strict=True)
+            for j, k in zip(structure.joints, preload.factorised_springs, strict=True)
         ]
         sprung = added(None, laid)
-        stiffness, mass = added(structure.vibrating[0], [sprung]), structure.vibrating[1]
+        stiffness, mass = added(structure.dynamic_matrices[0], [sprung]), structure.dynamic_matrices[1]
         check_modes(problem.mode_count, stiffness.shape[0])
         self.near = near_factor(
             factor,
@@ -92,7 +92,7 @@ class SharedModes:
         tolerance: of the squared frequencies, relative; shapes: False where only these are wanted.
         """
         structure = problem.structure
-        sprung = structure.sprung(springs)
+        sprung = structure.joint_stiffness(springs)
         if self.near is not None:
             # the sum with the parts would take longer than the modes where the basis has them
             stiffness = UpdatedStiffness(before=self.near.span.stiffness, change=sprung - self._sprung)
@@ -104,9 +104,9 @@ class SharedModes:
                 return self._from_near(problem, stiffness, tolerance, shapes), stiffness
             except NotConverged:
                 self.near = None  # before the next factorisation: one at a time in memory
-        stiffness, mass = added(structure.vibrating[0], [sprung]), structure.vibrating[1]
+        stiffness, mass = added(structure.dynamic_matrices[0], [sprung]), structure.dynamic_matrices[1]
         modes = modes_with(problem, stiffness, mass, rigid=structure.rigid)
-        self.near = NearbyModes(modes, stiffness, mass, rigid=problem.rigid_count, most=_most(problem))
+        self.near = ModalReanalysis(modes, stiffness, mass, rigid=problem.rigid_count, most=_most(problem))
         self._sprung = sprung
         return modes, stiffness
 
@@ -119,7 +119,7 @@ class SharedModes:
     def _factorise(self, problem: ModalProblem, stiffness: Any) -> None:
         """Factorise a stiffness [N/m] that the factorisation at hand is far from; the basis stays."""
         assert self.near is not None
-        matrix = Shifted(stiffness=stiffness, mass=problem.structure.vibrating[1], shift=self.near.modes.shift)
+        matrix = Shifted(stiffness=stiffness, mass=problem.structure.dynamic_matrices[1], shift=self.near.modes.shift)
         solver = problem.structure.solver(problem.choice.solver)
         self.near.take(factorise_roughly(matrix, rigid=problem.structure.rigid, solver=solver), stiffness)
 

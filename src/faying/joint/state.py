@@ -55,7 +55,7 @@ def vibrate(
     modes, stiffness = shared.of(problem, springs)
     loss = structure.lost(springs, viscous=choice.damping == "viscous")
     check_motions(structure, modes)
-    preload.take(modes.factorisation, problem.shift_frequency)
+    preload.adopt_factor(modes.factorisation, problem.shift_frequency)
     assert shared.near is not None
     damped = damped_near(shared.near, modes, stiffness, loss, count=choice.count, kind=choice.damping, tolerance=EXACT)
     return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
@@ -158,7 +158,7 @@ class State(Summary):
     def modes(self) -> VibrationModes:
         """The elastic modes."""
         damped = self.vibration.damped
-        shapes = damped.real_shapes(self.structure.vibrating[1])
+        shapes = damped.real_shapes(self.structure.dynamic_matrices[1])
         lossless = not self.structure.predicts_loss
         return VibrationModes(
             frequencies=damped.frequencies,
@@ -324,7 +324,7 @@ def end_notes(structure: Structure, springs: Sequence[Springs[Interface]], load:
     """Say where the pressure exceeds the end of a law, with the share of the joint's area."""
     out = []
     for joint, s in zip(structure.joints, springs, strict=True):
-        share = float(s.interface.weights @ joint.past_end(s) / s.interface.weights.sum())
+        share = float(s.interface.weights @ joint.above_range(s) / s.interface.weights.sum())
         if share > 0:
             model = joint.law.model
             text = (

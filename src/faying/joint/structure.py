@@ -17,8 +17,8 @@ from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
+from faying.joint.assembled_parts import AssembledParts, added
 from faying.joint.attachments import PointMass, Support
-from faying.joint.frame import Frame, added
 from faying.joint.joint import FittedJoint, Joint, each_pair_once, known_face
 from faying.joint.joint_law import JointLaw
 from faying.joint.preload import PreloadProblem
@@ -71,7 +71,7 @@ class Structure(Summary):
     supports: tuple[Support, ...]
     masses: tuple[PointMass, ...]
     dowels: tuple[Dowel, ...]
-    frame: Frame | None = field(repr=False, compare=False)
+    assembled: AssembledParts | None = field(repr=False, compare=False)
 
     def __init__(
         self,
@@ -83,7 +83,7 @@ class Structure(Summary):
         supports: Sequence[Support] = (),
         masses: Sequence[PointMass] = (),
         dowels: Sequence[Dowel] = (),
-        frame: Frame | None = None,
+        assembled: AssembledParts | None = None,
     ) -> None:
         of_parts = materials_of_parts(mesh, materials)
         for bolt in bolts:
@@ -106,7 +106,7 @@ class Structure(Summary):
             "supports": tuple(supports),
             "masses": tuple(masses),
             "dowels": tuple(dowels),
-            "frame": frame,
+            "assembled": assembled,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -141,27 +141,27 @@ class Structure(Summary):
             if again:
                 raise InputError(f"two {what} are called {again[0]!r}; give each a name of its own")
         each_pair_once({joint.name: joint.faces for joint in self.joints})
-        frame = Frame(
+        assembled = AssembledParts(
             mesh=self.mesh,
             materials=self.materials,
-            joined=tuple(face for joint in self.joints for face in joint.faces),
+            joint_faces=tuple(face for joint in self.joints for face in joint.faces),
             bolts=self.bolts,
             supports=self.supports,
             masses=self.masses,
             dowels=self.dowels,
         )
-        if self.frame is None or not self.frame.same(frame):
-            object.__setattr__(self, "frame", frame)
+        if self.assembled is None or not self.assembled.same(assembled):
+            object.__setattr__(self, "assembled", assembled)
 
     @property
-    def _frame(self) -> Frame:
-        assert self.frame is not None
-        return self.frame
+    def _assembled(self) -> AssembledParts:
+        assert self.assembled is not None
+        return self.assembled
 
     @property
     def matrices(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and mass [kg] of the parts alone."""
-        return self._frame.matrices
+        return self._assembled.matrices
 
     @property
     def mass(self) -> float:
@@ -171,20 +171,20 @@ class Structure(Summary):
     @property
     def fixed(self) -> Index:
         """Unknowns that supports keep at rest."""
-        return self._frame.fixed
+        return self._assembled.fixed
 
     @property
     def fitted_bolts(self) -> tuple[FittedBolt | FittedSolidBolt, ...]:
         """The bolts in their places."""
-        return self._frame.fitted_bolts
+        return self._assembled.fitted_bolts
 
     @property
     def fitted_dowels(self) -> tuple[FittedDowel, ...]:
         """The dowels in their places."""
-        return self._frame.fitted_dowels
+        return self._assembled.fitted_dowels
 
     @property
-    def pulls(self) -> Array:
+    def bolt_force_operator(self) -> Array:
         """What a displacement adds to the force of each bolt (bolts, unknowns) [N/m]; 0 for a bolt without a shank."""
         return np.array([bolt.pull for bolt in self.fitted_bolts]).reshape(-1, self.mesh.unknowns)
 
@@ -196,49 +196,49 @@ class Structure(Summary):
     @property
     def loads(self) -> Array:
         """Nodal forces [N] (unknowns, bolts) of 1 N in each bolt."""
-        return self._frame.loads
+        return self._assembled.loads
 
     @property
-    def standing(self) -> Any:
+    def supported_stiffness(self) -> Any:
         """Stiffness [N/m] of the parts, of dowels and of elastic supports, before any bolt is tight."""
-        return self._frame.standing
+        return self._assembled.supported_stiffness
 
     @property
-    def vibrating(self) -> tuple[Any, Any]:
+    def dynamic_matrices(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and mass [kg] of all but the joints, dowels and masses included; fixed ones cleared."""
-        return self._frame.vibrating
+        return self._assembled.dynamic_matrices
 
-    def held_back(self, displacement: Array) -> Array:
+    def elastic_forces(self, displacement: Array) -> Array:
         """Forces [N] (unknowns,) with which parts, dowels, springs and tight bolts resist a displacement [m]."""
-        return self._frame.held_back(displacement)
+        return self._assembled.elastic_forces(displacement)
 
     def inertia(self, acceleration: Array) -> Array:
         """Mass of all that moves times an acceleration [m/s2] (unknowns,), that of fixed unknowns included [N]."""
-        return self._frame.inertia(acceleration)
+        return self._assembled.inertia(acceleration)
 
     @property
-    def is_bare(self) -> bool:
+    def is_parts_only(self) -> bool:
         """Whether the parts under preload are all that vibrates: no bolt or dowel adds a stiffness or a mass."""
-        return self._frame.is_bare
+        return self._assembled.is_parts_only
 
     @property
     def rigid(self) -> Array:
         """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
-        return self._frame.rigid
+        return self._assembled.rigid
 
     @property
     def rigid_count(self) -> int:
         """Number of rigid motions that no support resists, 0 to 6."""
         return int(self.rigid.shape[1])
 
-    def loose(self) -> Array:
+    def unjoined_motions(self) -> Array:
         """Motions (unknowns, r) of the parts, each rigid by itself, that nothing resists with all joints apart."""
-        return self._frame.loose()
+        return self._assembled.unjoined_motions()
 
     @property
     def shift_frequency(self) -> float:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
-        return self._frame.shift_frequency
+        return self._assembled.shift_frequency
 
     def solver(self, name: str | None = None) -> str | Factoriser:
         """What factorises the matrices of this structure, by the name that a study gives; part by part if need be.
@@ -250,12 +250,12 @@ class Structure(Summary):
         """
         way = chosen(name)
         if is_mpi(way):
-            return self._frame.over_mpi(way)
+            return self._assembled.over_mpi(way)
         if len(self.mesh.bodies) < 2 or way not in ("pardiso", BY_PARTS):
             return way
-        if way == "pardiso" and (name or not self._frame.is_large):
+        if way == "pardiso" and (name or not self._assembled.is_large):
             return way
-        return self._frame.by_parts
+        return self._assembled.by_parts
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -342,7 +342,7 @@ class Structure(Summary):
         pairs = [(joint.interface, joint.law) for joint in self.joints]
         way = self.solver(solver)
         problem = PreloadProblem(
-            self.standing,
+            self.supported_stiffness,
             self.matrices[1],
             self.rigid,
             pairs,
@@ -352,22 +352,22 @@ class Structure(Summary):
             fixed=self.fixed,
         )
         if not (isinstance(way, Factoriser) and way.cheap):
-            problem.corners = self._frame.corners
+            problem.vertices = self._assembled.vertices
         return problem
 
-    def joined(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> tuple[Any, Any]:
+    def coupled(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> tuple[Any, Any]:
         """Stiffness [N/m] with the springs of all joints, and their loss; fixed unknowns cleared.
 
         The loss is the imaginary part of the stiffness [N/m], or where viscous the damping [N s/m] of the JK paper.
         """
-        return added(self.vibrating[0], [self.sprung(springs)]), self.lost(springs, viscous=viscous)
+        return added(self.dynamic_matrices[0], [self.joint_stiffness(springs)]), self.lost(springs, viscous=viscous)
 
-    def sprung(self, springs: Sequence[Springs[Interface]]) -> Any:
+    def joint_stiffness(self, springs: Sequence[Springs[Interface]]) -> Any:
         """Stiffness [N/m] of the springs of all joints alone; fixed unknowns cleared."""
         return added(None, [constrain(s.stiffness(), self.fixed, 0.0) for s in springs])
 
     def lost(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> Any:
-        """The loss of the springs of all joints, as `joined` gives it."""
+        """The loss of the springs of all joints, as `coupled` gives it."""
         from scipy.sparse import csr_array
 
         weight = float(self.matrices[1].sum()) / 3 if viscous else 0.0
@@ -393,7 +393,7 @@ class Structure(Summary):
 
     def tied(self) -> Any:
         """Stiffness [N/m] that bonds the faces of every joint where their nodes do not match; fixed ones cleared."""
-        ties = added(None, [self._frame.tie(joint.faces) for joint in self.joints])
+        ties = added(None, [self._assembled.tie(joint.faces) for joint in self.joints])
         return constrain(ties, self.fixed, 0.0)
 
     def outline(self) -> tuple[Index, Index]:

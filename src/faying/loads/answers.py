@@ -103,13 +103,13 @@ def joint_answers(
     return JointAnswers(dissipated=np.array(dissipated), **arrays)
 
 
-def _joint(contact: LoadedContact, trace: Any, bolt: Index, motion: Array, traction: Array) -> dict[str, float]:
+def _joint(contact: LoadedContact, interface: Any, bolt: Index, motion: Array, traction: Array) -> dict[str, float]:
     pressure, weights = -traction[:, 0], contact.weights
     touched = float(weights @ (contact.pressure > 0)) or NAN
-    whole = _Carried.of(trace, traction, weights, np.ones(len(weights), dtype=bool))
+    whole = _Carried.of(interface, traction, weights, np.ones(len(weights), dtype=bool))
     parts: dict[int, float] = {}
     for index in np.unique(bolt):
-        own = _Carried.of(trace, traction, weights, bolt == index)
+        own = _Carried.of(interface, traction, weights, bolt == index)
         if own.normal > 0:
             parts[int(index)] = own.equivalent / own.normal
     worst = max(parts, key=lambda k: parts[k], default=-1)
@@ -145,9 +145,9 @@ class _Carried:
     equivalent: float
 
     @classmethod
-    def of(cls, trace: Any, traction: Array, weights: Array, some: Mask) -> "_Carried":
+    def of(cls, interface: Any, traction: Array, weights: Array, some: Mask) -> "_Carried":
         """Return it of some points (q,) of an interface under tractions (q, 3) [Pa]."""
-        frames, places, weights = trace.frames[some], trace.positions[some], weights[some]
+        frames, places, weights = interface.frames[some], interface.positions[some], weights[some]
         press = weights * np.maximum(-traction[some, 0], 0.0)
         tau = np.einsum("q,qi,qij->qj", weights, traction[some, 1:], frames[:, 1:])
         normal, resultant = float(press.sum()), tau.sum(axis=0)
@@ -228,7 +228,7 @@ def bolt_answers(
 
 def bolt_changes(structure: Structure, state: LoadedState, motion: Array) -> Array:
     """Change of the force of each bolt [N] (b,) by a displacement [m] (unknowns,) under the load of a state."""
-    out = structure.pulls @ motion
+    out = structure.bolt_force_operator @ motion
     for k, fitted in enumerate(structure.fitted_bolts):
         if isinstance(fitted, FittedBolt):
             out[k] -= fitted.axial_stiffness * state.acting.longer[k]

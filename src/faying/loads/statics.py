@@ -96,7 +96,7 @@ class LoadStatics:
     Args:
         stiffness: K_0 [N/m] (unknowns, unknowns), fixed unknowns cleared.
         factor: What solves near it.
-        held_back: K times a displacement, fixed unknowns included.
+        elastic_forces: K times a displacement, fixed unknowns included.
         joints: Relative motion of the faces and the contact of each joint.
         displacement: Under the preload [m] (unknowns,).
         rigid: Motions (unknowns, r) that nothing resists.
@@ -108,7 +108,7 @@ class LoadStatics:
         *,
         stiffness: Any,
         factor: Any,
-        held_back: Callable[[Array], Array],
+        elastic_forces: Callable[[Array], Array],
         joints: Sequence[tuple[Any, LoadedContact]],
         displacement: Array,
         rigid: Array,
@@ -116,7 +116,7 @@ class LoadStatics:
     ) -> None:
         self.stiffness, self.factor, self.joints = stiffness, factor, list(joints)
         self.displacement, self.fixed = displacement, fixed
-        self._held_back = held_back
+        self._elastic_forces = elastic_forces
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
         none = np.zeros((stiffness.shape[0], 0))
         self._vectors, self._images = GrowingColumns(none), GrowingColumns(none)
@@ -210,7 +210,7 @@ class LoadStatics:
         return found
 
     def _task(self, name: str, before: LoadedState, target: Acting) -> _Task:
-        moved = tuple(np.asarray(trace.relative @ target.moved).reshape(-1, 3) for trace, _ in self.joints)
+        moved = tuple(np.asarray(interface.relative @ target.moved).reshape(-1, 3) for interface, _ in self.joints)
         x = np.zeros(self.size)
         x[: len(before.coordinates)] = before.coordinates
         return _Task(
@@ -232,8 +232,8 @@ class LoadStatics:
     def _least(self) -> float:
         """The same of the forces of the joints under the preload, times SMALLEST."""
         total = np.zeros(self.stiffness.shape[0])
-        for (trace, contact), traction in zip(self.joints, self._at_rest, strict=True):
-            total += trace.relative.T @ (contact.weights[:, None] * traction).ravel()
+        for (interface, contact), traction in zip(self.joints, self._at_rest, strict=True):
+            total += interface.relative.T @ (contact.weights[:, None] * traction).ravel()
         total = admissible(total, self._rigid, self.fixed)
         return SMALLEST * float(np.sqrt(max(float(total @ self._solved(total[:, None])[:, 0]), 0.0)))
 
@@ -259,13 +259,13 @@ class LoadStatics:
             if not more or (worst.error <= ROUNDED and _stands(past)):
                 return
             past.append(worst.error)
-            if not self._extend(*self._ahead([tasks[left[column]] for column in more], z[:, more], sizes[more])):
+            if not self._extend(*self._extrapolated([tasks[left[column]] for column in more], z[:, more], sizes[more])):
                 if worst.error <= ROUNDED:
                     return
                 raise self._lost(worst)
         raise self._lost(max(tasks, key=lambda task: task.error))
 
-    def _ahead(self, tasks: Sequence[_Task], new: Array, size: Array) -> tuple[Array, Array]:
+    def _extrapolated(self, tasks: Sequence[_Task], new: Array, size: Array) -> tuple[Array, Array]:
         """Vectors (unknowns, k) and those that the next rounds would find if tangents stayed as they are."""
         vectors, sizes = [new], [size]
         for _ in range(ROUNDS_AHEAD):
@@ -280,9 +280,9 @@ class LoadStatics:
         """Forces [N] (unknowns,) by which joints depart from their springs, of a small motion (unknowns,)."""
         assert task.local is not None
         total = np.zeros_like(motion)
-        for (trace, contact), change in zip(self.joints, task.local.tangents, strict=True):
-            by = np.asarray(trace.relative @ motion).reshape(-1, 3, 1)
-            total -= trace.relative.T @ (contact.weights[:, None] * np.matmul(change, by)[:, :, 0]).ravel()
+        for (interface, contact), change in zip(self.joints, task.local.tangents, strict=True):
+            by = np.asarray(interface.relative @ motion).reshape(-1, 3, 1)
+            total -= interface.relative.T @ (contact.weights[:, None] * np.matmul(change, by)[:, :, 0]).ravel()
         return admissible(total, self._rigid, self.fixed)
 
     def _balance(self, task: _Task, tolerance: float) -> None:
@@ -360,8 +360,8 @@ class LoadStatics:
         out -= combined(self._images.values, np.stack([task.x for task in tasks], axis=1))
         for column, task in enumerate(tasks):
             assert task.local is not None
-            for (trace, contact), local in zip(self.joints, task.local.tractions, strict=True):
-                out[:, column] -= trace.relative.T @ (contact.weights[:, None] * local).ravel()
+            for (interface, contact), local in zip(self.joints, task.local.tractions, strict=True):
+                out[:, column] -= interface.relative.T @ (contact.weights[:, None] * local).ravel()
             out[:, column] = admissible(out[:, column], self._rigid, self.fixed)
         return out
 
@@ -388,7 +388,7 @@ class LoadStatics:
         """Forces f - K d [N] (unknowns,)."""
         force = acting.force
         if np.any(acting.moved):
-            force = force - self._held_back(acting.moved)
+            force = force - self._elastic_forces(acting.moved)
         return admissible(force, self._rigid, self.fixed)
 
     def _spring_forces(self, acting: Acting) -> Array:
@@ -396,10 +396,10 @@ class LoadStatics:
         total = np.zeros_like(acting.force)
         if not np.any(acting.moved):
             return total
-        for trace, contact in self.joints:
-            by = np.asarray(trace.relative @ acting.moved).reshape(-1, 3)
+        for interface, contact in self.joints:
+            by = np.asarray(interface.relative @ acting.moved).reshape(-1, 3)
             local = contact.weights[:, None] * np.stack([contact.k_n, contact.k_t, contact.k_t], axis=1) * by
-            total += trace.relative.T @ local.ravel()
+            total += interface.relative.T @ local.ravel()
         return admissible(total, self._rigid, self.fixed)
 
     def _solved(self, forces: Array) -> Array:
@@ -431,8 +431,8 @@ class LoadStatics:
             self._vectors.add(found)
             self._images.add(image)
         self._relative = [
-            np.concatenate([old, np.asarray(trace.relative @ found)], axis=1)
-            for old, (trace, _) in zip(self._relative, self.joints, strict=True)
+            np.concatenate([old, np.asarray(interface.relative @ found)], axis=1)
+            for old, (interface, _) in zip(self._relative, self.joints, strict=True)
         ]
         self._single = [one.astype(np.float32).reshape(len(one) // 3, 3, -1) for one in self._relative]
         return int(found.shape[1])

@@ -209,6 +209,6 @@ def level_model(structure: Structure, preload: PreloadState, vectors: Array, fri
     relatives = [np.asarray(interface.relative @ vectors) for interface in interfaces]
     laws = cut_laws(structure, preload, friction, SPRINGS)
     joints = slip_joints(interfaces, preload.displacement, laws, relatives)
-    parts = vectors.T @ product(structure.vibrating[0], vectors)
+    parts = vectors.T @ product(structure.dynamic_matrices[0], vectors)
     slip = SlipModel(stiffness=(parts + parts.T) / 2, mass=np.eye(vectors.shape[1]), joints=joints)
     return LevelModel(slip=slip, vectors=vectors, rigid=structure.rigid_count)

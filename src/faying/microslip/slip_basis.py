@@ -20,8 +20,8 @@ from faying.microslip.epmc import ALL_SLIDING, OTHER_MODES, Epmc, EpmcPoint
 from faying.microslip.microslip import Microslip
 from faying.microslip.slip_model import SlipModel, slip_joints
 from faying.numerics.basis import Basis
+from faying.numerics.modal_reanalysis import nearby_modes
 from faying.numerics.modes import Modes
-from faying.numerics.nearby import nearby_modes
 from faying.typing import Array
 
 TANGENTIAL = (0.3, 0.1, 0.03, 0.01)  # of k_t: joints that slip
@@ -66,8 +66,8 @@ class SlipBasis:
                 raise InputError(
                     f'joint {joint.name!r} has springs = "per-node"; a backbone takes springs per area: leave it out'
                 )
-        self.stiffness, self.mass = structure.vibrating
-        self.joined, _ = structure.joined(self.springs)
+        self.stiffness, self.mass = structure.dynamic_matrices
+        self.joined, _ = structure.coupled(self.springs)
         self.basis = self._empty()
 
     def _empty(self) -> Basis:
@@ -76,7 +76,7 @@ class SlipBasis:
         return Basis(
             reference=reference,
             operators=(self.stiffness, self.mass),
-            traces=[joint.interface for joint in self.structure.joints],
+            interfaces=[joint.interface for joint in self.structure.joints],
             rigid=free,
             rigid_momentum=np.asarray(self.mass @ free),
         )
@@ -101,7 +101,7 @@ class SlipBasis:
             if report is not None:
                 report(f"basis: {name} x {factor:g}")
             softened = [replace(s, **{name: factor * getattr(s, name)}) for s in self.springs]
-            stiffness, _ = self.structure.joined(softened)
+            stiffness, _ = self.structure.coupled(softened)
             try:
                 _, shapes = nearby_modes(
                     self.modes, stiffness, self.mass, rigid=rigid, count=self._trained, tolerance=ROUGH, more=found
@@ -175,7 +175,7 @@ class SlipBasis:
             c, s = 2 * h - 1, 2 * h
             left[:, c] -= (h * w) ** 2 * inertia[:, c] + 2 * zeta * h * w**2 * inertia[:, s]
             left[:, s] -= (h * w) ** 2 * inertia[:, s] - 2 * zeta * h * w**2 * inertia[:, c]
-        for interface, joint, found in zip(self.basis.traces, epmc.model.joints, point.traction, strict=True):
+        for interface, joint, found in zip(self.basis.interfaces, epmc.model.joints, point.traction, strict=True):
             traction = found * joint.weights[:, None]
             traction[0] -= joint.at_rest[0] * joint.weights[:, None]
             left = left + interface.relative.T @ traction.reshape(len(X), -1).T

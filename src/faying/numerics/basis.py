@@ -20,7 +20,7 @@ class Basis:
 
     reference: Any
     operators: tuple[Any, ...]
-    traces: Sequence[Any]
+    interfaces: Sequence[Any]
     rigid: Array
     rigid_momentum: Array
     rows: Sequence[Array] = ()
@@ -32,7 +32,7 @@ class Basis:
         nothing = np.zeros((self.reference.shape[0], 0))
         self._vectors, self._image = GrowingColumns(nothing), GrowingColumns(nothing)
         self.small = [np.zeros((0, 0)) for _ in self.operators]
-        self.relative = [np.zeros((3 * len(trace.weights), 0)) for trace in self.traces]
+        self.relative = [np.zeros((3 * len(trace.weights), 0)) for trace in self.interfaces]
         self.seen = [np.zeros((len(rows), 0)) for rows in self.rows]
 
     @property
@@ -67,7 +67,7 @@ class Basis:
             zip(*(np.split(x, len(self.small), axis=1) for x in (sides, corners)), strict=True)
         ):
             self.small[i] = np.block([[self.small[i], side], [side.T, (corner + corner.T) / 2]])
-        moved = [trace.relative @ new for trace in self.traces]
+        moved = [trace.relative @ new for trace in self.interfaces]
         self.relative = [np.concatenate(pair, axis=1) for pair in zip(self.relative, moved, strict=True)]
         self.seen = [np.concatenate([old, rows @ new], axis=1) for old, rows in zip(self.seen, self.rows, strict=True)]
         self._vectors.add(new)

@@ -12,8 +12,8 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.errors import NotConverged
+from faying.numerics.modal_reanalysis import LEAST, Measure, ModalReanalysis
 from faying.numerics.modes import Modes
-from faying.numerics.nearby import LEAST, Measure, NearbyModes
 from faying.numerics.product import combined, product
 from faying.numerics.signs import definite
 from faying.typing import Array, Complex, Index
@@ -73,14 +73,14 @@ def damped_modes(
     this; count: how many complex modes are wanted, all elastic ones where None; tolerance: of the estimated relative
     error of the complex eigenvalues. Raises NotConverged where it is not reached.
     """
-    near = NearbyModes(modes, stiffness, mass, rigid=rigid)
+    near = ModalReanalysis(modes, stiffness, mass, rigid=rigid)
     if loss.count_nonzero():
         near.add(modes.factorisation.solve(np.asfortranarray(loss @ modes.shapes[:, rigid:])))
     return damped_near(near, modes, stiffness, loss, count=count, kind=kind, tolerance=tolerance)
 
 
 def damped_near(
-    near: NearbyModes,
+    near: ModalReanalysis,
     modes: Modes,
     stiffness: Any,
     loss: Any,
@@ -181,7 +181,7 @@ def _times(real: Any, other: Complex) -> Complex:
     return np.asarray(product(real, other.real) + 1j * product(real, other.imag))
 
 
-def _enrich(near: NearbyModes, stiffness: Any, new: Array, *, least: float) -> int:
+def _enrich(near: ModalReanalysis, stiffness: Any, new: Array, *, least: float) -> int:
     """Add columns; combinations of them whose stiffness energy is below `least` are left out."""
     gram = new.T @ product(stiffness, new)
     values, rotation = np.linalg.eigh((gram + gram.T) / 2)

@@ -72,14 +72,14 @@ def _five(value: float) -> str:
 
 def beyond(result: Result) -> Rows:
     """One row per mode: held at the end of the law and bonded beyond it; empty where the law covers all pressures."""
-    if result.beyond_frequencies is None or result.beyond_loss_factors is None:
+    if result.above_range_frequencies is None or result.above_range_loss_factors is None:
         return []
     rows: Rows = [["mode", *(f"{load_text(load)} constant .. bonded [Hz] (loss)" for load in result.loads)]]
     for j in range(len(result.bonded)):
         cells = []
         for i in range(len(result.loads)):
-            low, high = result.frequencies[i, j], result.beyond_frequencies[i, j]
-            losses = f" ({result.loss_factors[i, j]:.1e} .. {result.beyond_loss_factors[i, j]:.1e})"
+            low, high = result.frequencies[i, j], result.above_range_frequencies[i, j]
+            losses = f" ({result.loss_factors[i, j]:.1e} .. {result.above_range_loss_factors[i, j]:.1e})"
             cells.append(f"{low:.2f} .. {high:.2f}, {high / low - 1:+.2%}{'' if 'nan' in losses else losses}")
         rows.append([str(j + 1), *cells])
     return rows
@@ -96,17 +96,17 @@ def laws(result: Result) -> Rows:
     if (
         r.alternative_frequencies is None
         or r.alternative_loss_factors is None
-        or r.alternative_beyond_frequencies is None
+        or r.alternative_above_range_frequencies is None
     ):
         return []
-    if r.alternative_reach is None or r.alternative_beyond_share is None or r.alternative_outside_share is None:
+    if r.alternative_reach is None or r.alternative_above_range_share is None or r.alternative_outside_share is None:
         return []
-    own = r.frequencies[-1] if r.beyond_frequencies is None else r.beyond_frequencies[-1]
+    own = r.frequencies[-1] if r.above_range_frequencies is None else r.above_range_frequencies[-1]
     held = np.stack([r.frequencies[-1], *r.alternative_frequencies[:, -1]])
-    bonded = np.stack([own, *r.alternative_beyond_frequencies[:, -1]])
+    bonded = np.stack([own, *r.alternative_above_range_frequencies[:, -1]])
     lost = np.stack([r.loss_factors[-1], *r.alternative_loss_factors[:, -1]])
     reach = [min(float(law["greatest_pressure [Pa]"]) for law in r.laws), *r.alternative_reach]
-    beyond = [r.beyond_share[-1], *r.alternative_beyond_share[:, -1]]
+    beyond = [r.above_range_share[-1], *r.alternative_above_range_share[:, -1]]
     outside = [r.outside_share[-1], *r.alternative_outside_share[:, -1]]
     spread = np.nanmax(bonded, axis=0) / np.nanmin(held, axis=0)
     shown = np.sort(np.argsort(-spread)[:SHOWN])

@@ -17,7 +17,7 @@ MOST = 0.95  # of the points: where fewer have springs, the others are left out
 SEEN = 6  # of the motions of a joint, strongest first, by which points are alike
 
 
-def sprung(relative: Any, springs: Array) -> Array:
+def joint_stiffness(relative: Any, springs: Array) -> Array:
     """Stiffness (m, m) of springs (q, 3) [N/m], normal and both tangential, on a relative motion (3q, m).
 
     Springs and losses are never negative: half the work through their roots. A motion in single precision gives as many

@@ -31,13 +31,13 @@ class PartShares:
 
     Args:
         parts: Names (p,).
-        standing: Of each part, its share in `Structure.standing` [N/m]: a bolt that is drawn in lacks what its tension
-            takes.
-        stiffness, mass: Of each part, its shares in `Structure.vibrating` [N/m], [kg].
+        supported_stiffness: Of each part, its share in `Structure.supported_stiffness` [N/m]: a bolt that is drawn in
+            lacks what its tension takes.
+        stiffness, mass: Of each part, its shares in `Structure.dynamic_matrices` [N/m], [kg].
     """
 
     parts: tuple[str, ...]
-    standing: tuple[Any, ...]
+    supported_stiffness: tuple[Any, ...]
     stiffness: tuple[Any, ...]
     mass: tuple[Any, ...]
 
@@ -48,7 +48,7 @@ class PartShares:
 
         K, M = structure.matrices
         bonded = {part for pair in structure.mesh.bonded for part in pair}
-        standing, stiffness, mass = [], [], []
+        supported_stiffness, stiffness, mass = [], [], []
         for part in parts:
             if part in bonded:  # it shares nodes with another
                 nothing = {other: Nothing() for other in structure.mesh.parts}
@@ -64,10 +64,15 @@ class PartShares:
                 for bolt in structure.fitted_bolts
                 if isinstance(bolt, FittedSolidBolt) and bolt.bolt.part == part
             ]
-            standing.append(own[0] - constrain(drawn[0], structure.fixed, 0.0) if drawn else own[0])
+            supported_stiffness.append(own[0] - constrain(drawn[0], structure.fixed, 0.0) if drawn else own[0])
             stiffness.append(own[0])
             mass.append(own[1])
-        return cls(parts=tuple(parts), standing=tuple(standing), stiffness=tuple(stiffness), mass=tuple(mass))
+        return cls(
+            parts=tuple(parts),
+            supported_stiffness=tuple(supported_stiffness),
+            stiffness=tuple(stiffness),
+            mass=tuple(mass),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,25 +83,31 @@ class ReducedShares:
     by the balance of momentum alone, and leave the problem: `motion`.
 
     Args:
-        standing: (p, s, s) [N/m] in the basis for equilibrium.
+        supported_stiffness: (p, s, s) [N/m] in the basis for equilibrium.
         stiffness, mass: (p, d, d) in the basis for vibration.
         cross: (p, r, d), mass between rigid motions and the basis.
         corner: (p, r, r), mass of rigid motions; those of the whole structure are orthonormal.
     """
 
-    standing: Array
+    supported_stiffness: Array
     stiffness: Array
     mass: Array
     cross: Array
     corner: Array
 
-    def add(self, scales: Scales, standing: Array, stiffness: Array, mass: Array) -> tuple[Array, Array, Array]:
+    def add(
+        self, scales: Scales, supported_stiffness: Array, stiffness: Array, mass: Array
+    ) -> tuple[Array, Array, Array]:
         """The three matrices of the structure with its parts scaled."""
         k, m = (np.array([pair[i] for pair in scales]) - 1 for i in (0, 1))
         mass = mass + np.tensordot(m, self.mass, 1)
         if self.corner.shape[1] and np.any(m):
             mass = mass + np.tensordot(m, self.cross, 1).T @ self.motion(scales)
-        return standing + np.tensordot(k, self.standing, 1), stiffness + np.tensordot(k, self.stiffness, 1), mass
+        return (
+            supported_stiffness + np.tensordot(k, self.supported_stiffness, 1),
+            stiffness + np.tensordot(k, self.stiffness, 1),
+            mass,
+        )
 
     def motion(self, scales: Scales) -> Array:
         """Rigid motion (r, d) that goes with each vector of the basis for vibration, so that no momentum is left."""

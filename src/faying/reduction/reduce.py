@@ -39,15 +39,15 @@ STATIC_SHARE = 15.0
 LEFT_OUT = 0.1  # of the tolerance of an eigenvalue: energy of a direction of the basis for vibration that is not taken
 
 
-def pressed(traces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadState) -> float:
+def pressed(interfaces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadState) -> float:
     """Root of the energy [sqrt(J)], twice, of the joints' normal springs under their pressures.
 
     What the parts and a bolt's shank store beside it says nothing of how exact the pressures are.
     """
     total = 0.0
-    for trace, law, p in zip(traces, laws, found.pressures, strict=True):
+    for interface, law, p in zip(interfaces, laws, found.pressures, strict=True):
         k_n = np.where(p > 0, law.stiffness(p)[0], 1.0)
-        total += float(trace.weights @ (p**2 / k_n))
+        total += float(interface.weights @ (p**2 / k_n))
     return float(np.sqrt(total))
 
 
@@ -69,9 +69,13 @@ class Reduction:
         """
         from scipy.linalg import cholesky, solve_triangular
 
-        self.stiffness, self.mass = structure.vibrating
-        self.stiffness_static = constrain(structure.standing, structure.fixed, 0.0)
-        self.traces, self.factor, self.reference = [joint.interface for joint in structure.joints], factor, reference
+        self.stiffness, self.mass = structure.dynamic_matrices
+        self.stiffness_static = constrain(structure.supported_stiffness, structure.fixed, 0.0)
+        self.interfaces, self.factor, self.reference = (
+            [joint.interface for joint in structure.joints],
+            factor,
+            reference,
+        )
         self.fixed, mass, rigid = structure.fixed, self.mass, structure.rigid
         self.loads = structure.loads.copy()
         self.loads[self.fixed] = 0.0
@@ -79,11 +83,11 @@ class Reduction:
             root = cholesky(rigid.T @ (mass @ rigid))
             rigid = solve_triangular(root, rigid.T, trans="T").T
         motions: dict[str, Any] = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
-        self.shares, more = shares, (() if shares is None else shares.standing)
+        self.shares, more = shares, (() if shares is None else shares.supported_stiffness)
         self.static = Basis(
             reference=reference,
             operators=(self.stiffness_static, *more),
-            traces=self.traces,
+            interfaces=self.interfaces,
             rows=[self.loads.T],
             **motions,
         )
@@ -92,7 +96,7 @@ class Reduction:
         self.dynamic = Basis(
             reference=reference,
             operators=(self.stiffness, mass, *more),
-            traces=self.traces,
+            interfaces=self.interfaces,
             rows=self._pushed,
             **motions,
         )
@@ -131,8 +135,8 @@ class Reduction:
     def _project(self, count: int, coarse: int) -> None:
         """Make `model` of the bases as they are."""
         self.model = ReducedModel(
-            weights=[trace.weights for trace in self.traces],
-            gaps=[trace.gap for trace in self.traces],
+            weights=[interface.weights for interface in self.interfaces],
+            gaps=[interface.gap for interface in self.interfaces],
             static_stiffness=self.static.small[0],
             static_loads=self.static.seen[0].T,
             static_relative=self.static.relative,
@@ -172,7 +176,7 @@ class Reduction:
         """The bases that `arrays` has given, their reference factorised again."""
         springs = unstacked(kept["reference"], [joint.interface for joint in structure.joints])
         shifted = Shifted(
-            stiffness=structure.joined(springs)[0], mass=structure.vibrating[1], shift=float(kept["shift"])
+            stiffness=structure.coupled(springs)[0], mass=structure.dynamic_matrices[1], shift=float(kept["shift"])
         )
         factor = factorise_roughly(shifted, rigid=structure.rigid, solver=solver)
         made = cls(structure, factor=factor, reference=shifted.whole(), shares=shares)
@@ -190,7 +194,7 @@ class Reduction:
             return None
         count = len(self.shares.parts)
         return ReducedShares(
-            standing=np.stack(self.static.small[1:]),
+            supported_stiffness=np.stack(self.static.small[1:]),
             stiffness=np.stack(self.dynamic.small[2 : 2 + count]),
             mass=np.stack(self.dynamic.small[2 + count :]),
             cross=np.stack(self.dynamic.seen),
@@ -221,9 +225,9 @@ class Reduction:
         structure = structure.with_joints(laws=laws)
         found = checked_preload(structure, structure.assembly(solver=solver), PreloadCase(tuple(map(float, forces))))
         shift = shift_frequency or structure.shift_frequency
-        _, mass = structure.vibrating
+        _, mass = structure.dynamic_matrices
         springs = structure.springs(found.pressures)
-        joined, _ = structure.joined(springs)
+        joined, _ = structure.coupled(springs)
         rigid_count = structure.rigid_count
         modes = lowest_modes(joined, mass, rigid_count + count + EXTRA_MODES, shift_frequency=shift, solver=solver)
         check_motions(structure, modes)
@@ -259,17 +263,17 @@ class Reduction:
     ) -> Array:
         """What an equilibrium leaves of the forces [N] (n,)."""
         u = self.static.vectors @ found.displacement
-        shares = () if self.shares is None else self.shares.standing
+        shares = () if self.shares is None else self.shares.supported_stiffness
         residual = self.loads @ forces - self._scaled(self.stiffness_static, shares, 0, u)
-        for trace, law, limit, p, relative in zip(
-            self.traces, laws, friction, found.pressures, self.static.relative, strict=True
+        for interface, law, limit, p, relative in zip(
+            self.interfaces, laws, friction, found.pressures, self.static.relative, strict=True
         ):
             slip = (relative @ found.displacement).reshape(-1, 3)[:, 1:]
-            grip = StickSlip(
+            slip_state = StickSlip(
                 k_t=law.stiffness(p)[1], limit=None if limit is None else limit * p, anchor=np.zeros_like(slip)
             )
-            local = np.concatenate([-p[:, None], grip.shear(slip)], axis=1) * trace.weights[:, None]
-            residual = residual - trace.relative.T @ local.ravel()
+            local = np.concatenate([-p[:, None], slip_state.shear(slip)], axis=1) * interface.weights[:, None]
+            residual = residual - interface.relative.T @ local.ravel()
         residual[self.fixed] = 0.0
         return np.asarray(residual)
 
@@ -279,7 +283,7 @@ class Reduction:
         """Error of an equilibrium in energy over that of the joints' springs [-], and what would mend it (n,)."""
         residual = self.static_residual(laws, forces, friction, found)
         answer = self.factor.solve(residual)
-        return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / pressed(self.traces, laws, found)), answer
+        return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / pressed(self.interfaces, laws, found)), answer
 
     def train_static(
         self,
@@ -293,11 +297,11 @@ class Reduction:
         error = np.inf
         for _ in range(FEW_STEPS):
             found = self.model.equilibrium_from(laws, forces, friction, start)
-            error, mend = self.static_error(laws, forces, friction, found)
+            error, correction = self.static_error(laws, forces, friction, found)
             if error < tolerance:
                 return found
             start = found.displacement
-            self.static.add(mend[:, None])
+            self.static.add(correction[:, None])
             self.refresh()
         raise NotConverged(
             f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
@@ -339,12 +343,12 @@ class Reduction:
         if parts.shape[1] > vectors.shape[1]:
             force, moved = (both[:, : len(values)] + 1j * both[:, len(values) :] for both in (force, moved))
         residual = force - moved * values
-        for trace, relative, d in zip(self.traces, self.dynamic.relative, springs, strict=True):
-            n, t = trace.weights * d.k_n, trace.weights * d.k_t
+        for interface, relative, d in zip(self.interfaces, self.dynamic.relative, springs, strict=True):
+            n, t = interface.weights * d.k_n, interface.weights * d.k_t
             if lossy:
                 n, t = n * (1 + 1j * d.loss_n), t * (1 + 1j * d.loss_t)
             share = np.stack([n, t, t], axis=1).reshape(-1, 1)
-            residual = residual + trace.relative.T @ (share * (relative @ vectors))
+            residual = residual + interface.relative.T @ (share * (relative @ vectors))
         residual[self.fixed] = 0.0
         return np.asarray(residual)
 
@@ -356,8 +360,8 @@ class Reduction:
         Of the equilibrium that is what the frequencies change by under the pressures that one correction gives.
         """
         modal, _ = self.modal_error(laws, found.pressures, np.inf, slice(count))
-        _, mend = self.static_error(laws, forces, friction, found)
-        moved = [(trace.relative @ mend)[::3] for trace in self.traces]
+        _, correction = self.static_error(laws, forces, friction, found)
+        moved = [(interface.relative @ correction)[::3] for interface in self.interfaces]
         mended = [law.pressure(-gap - by)[0] for law, gap, by in zip(laws, found.openings, moved, strict=True)]
         old, new = (self.model.modes(self.model.springs(laws, p))[0].real for p in (found.pressures, mended))
         return float(modal.max() + np.abs(new / old - 1)[:count].max()) / 2  # of a square of a frequency
@@ -366,11 +370,11 @@ class Reduction:
         """Enrich until all modes of a variant are right; tolerance: of the complex eigenvalues."""
         poor: Any = np.arange(self.model.count)
         for _ in range(FEW_STEPS):
-            error, mend = self.modal_error(laws, pressures, tolerance, poor)
+            error, correction = self.modal_error(laws, pressures, tolerance, poor)
             poor = poor[error > tolerance]  # the others only gain by what is added
             if not len(poor):
                 return
-            new = self.dynamic.add(mend, least=LEFT_OUT * tolerance)
+            new = self.dynamic.add(correction, least=LEFT_OUT * tolerance)
             self.refresh()
             if not new:
                 raise NotConverged(f"reduction: the modes stay wrong by {error.max():.1e} and nothing improves them")
@@ -404,7 +408,7 @@ class Reduction:
 
     def _note(self, laws: Sequence[JointLaw], found: PreloadState, vectors: Any) -> None:
         """Keep in mind what a variant needs of the bases as they are."""
-        self._states.append(found.displacement[:, None] / pressed(self.traces, laws, found))
+        self._states.append(found.displacement[:, None] / pressed(self.interfaces, laws, found))
         self._needed += real_parts(vectors / np.linalg.norm(vectors, axis=0))
 
     def learn(self, laws: Sequence[JointLaw], found: Variant) -> None:

@@ -15,7 +15,7 @@ from faying.joint.equilibrium import Equilibrium, PreloadState, Steps, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
 from faying.numerics.damped import lowest_complex
-from faying.reduction.groups import Groups, sprung
+from faying.reduction.groups import Groups, joint_stiffness
 from faying.reduction.part_shares import ReducedShares, Scales
 from faying.reduction.secant import Secants, evenly_pressed
 from faying.typing import Array, Complex
@@ -64,7 +64,7 @@ class ReducedMotion:
 
     def springs(self, k_n: Array, k_t: Array) -> Array:
         """Stiffness (m, m) [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
-        return sprung(self.relative, self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+        return joint_stiffness(self.relative, self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +112,7 @@ def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT)
 
 def _of_springs(springs: Springs["ReducedMotion"], moved: Any, k_n: Array, k_t: Array) -> Array:
     """Stiffness (m, m) of springs per area k_n, k_t [Pa/m] of a joint on the motion (3q, m) of its points."""
-    return sprung(moved, springs.interface.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+    return joint_stiffness(moved, springs.interface.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
 
 
 class ReducedEquilibrium(Equilibrium):
@@ -124,7 +124,9 @@ class ReducedEquilibrium(Equilibrium):
     def _start(self, load: Array) -> Array:
         return evenly_pressed(self.stiffness, self.joints, load)
 
-    def _direction(self, u: Array, force: Array, grips: list[StickSlip], accuracy: float) -> Steps[tuple[Array, int]]:
+    def _direction(
+        self, u: Array, force: Array, slip_states: list[StickSlip], accuracy: float
+    ) -> Steps[tuple[Array, int]]:
         from scipy.linalg import LinAlgError, cho_factor
 
         size = float(np.linalg.norm(force))
@@ -133,16 +135,16 @@ class ReducedEquilibrium(Equilibrium):
             step = yield force
             return step, 0
         matrix = self.stiffness.copy()
-        for trace, k_n, k_t in self._tangents(u, grips):
+        for interface, k_n, k_t in self._tangents(u, slip_states):
             if not k_t[:, 0, 1].any():  # nothing slides
-                matrix += sprung(trace.quick, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
+                matrix += joint_stiffness(interface.quick, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
                 continue
-            local = trace.relative.reshape(len(k_n), 3, -1)
+            local = interface.relative.reshape(len(k_n), 3, -1)
             scaled = np.empty_like(local)
             scaled[:, 0] = k_n[:, None] * local[:, 0]
             scaled[:, 1] = k_t[:, 0, 0, None] * local[:, 1] + k_t[:, 0, 1, None] * local[:, 2]
             scaled[:, 2] = k_t[:, 1, 0, None] * local[:, 1] + k_t[:, 1, 1, None] * local[:, 2]
-            matrix += trace.relative.T @ scaled.reshape(trace.relative.shape)
+            matrix += interface.relative.T @ scaled.reshape(interface.relative.shape)
         try:
             self._tangent = cho_factor(matrix)
         except LinAlgError:
@@ -337,7 +339,9 @@ class ReducedModel:
                 rough = rough + turn.T @ s.stiffness() @ turn
             else:
                 w = s.interface.weights[:, None]
-                rough = rough + turn.T @ sprung(groups.light, w * np.stack([s.k_n, s.k_t, s.k_t], axis=1)) @ turn
+                rough = (
+                    rough + turn.T @ joint_stiffness(groups.light, w * np.stack([s.k_n, s.k_t, s.k_t], axis=1)) @ turn
+                )
         near, shapes = (found[..., :wanted] for found in np.linalg.eigh(rough))  # sooner than a part of them
         # the leading vectors of the basis are those of the first columns of `turn`, which is triangular
         cut = slice(0, self.coarse)

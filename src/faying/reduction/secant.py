@@ -10,7 +10,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.joint.equilibrium import PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
-from faying.reduction.groups import sprung
+from faying.reduction.groups import joint_stiffness
 from faying.typing import Array
 
 STEPS = 30  # after which Newton is asked
@@ -37,7 +37,7 @@ class _There:
     openings: list[Array]
     pressures: list[Array]
     k_n: list[Array]
-    grips: list[StickSlip]
+    slip_states: list[StickSlip]
     forces: list[Array]
 
 
@@ -138,19 +138,19 @@ class Secants:
         return force
 
     def _there(self, moves: list[Array]) -> _There:
-        there = _There(moves=moves, openings=[], pressures=[], k_n=[], grips=[], forces=[])
+        there = _There(moves=moves, openings=[], pressures=[], k_n=[], slip_states=[], forces=[])
         for (motion, law), friction, move in zip(self.joints, self.friction, moves, strict=True):
             gap = move[:, 0] + motion.gap
             p, k_n, k_t = law.contact(-gap)
             limit = None if friction is None else friction * p
-            grip = StickSlip(k_t=k_t, limit=limit, anchor=np.zeros((len(p), 2)))
+            slip_state = StickSlip(k_t=k_t, limit=limit, anchor=np.zeros((len(p), 2)))
             local = np.empty_like(move)
             local[:, 0] = -p
-            local[:, 1:] = grip.shear(move[:, 1:])
+            local[:, 1:] = slip_state.shear(move[:, 1:])
             there.openings.append(gap)
             there.pressures.append(p)
             there.k_n.append(k_n)
-            there.grips.append(grip)
+            there.slip_states.append(slip_state)
             there.forces.append((local * motion.weights[:, None]).ravel())
         return there
 
@@ -164,22 +164,24 @@ class Secants:
             groups = motion.groups
             rougher = rough and groups is not None
             tangents.append(
-                sprung(groups.light_mean, groups.sums(springs)) if rougher else sprung(motion.quick, springs)
+                joint_stiffness(groups.light_mean, groups.sums(springs))
+                if rougher
+                else joint_stiffness(motion.quick, springs)
             )
         return _answer(self.stiffness, tangents)
 
     def _springs(self, here: _There) -> list[Array]:
         """Springs [N/m] (q, 3) at the points of each joint, without tangential ones where it slides."""
         found = []
-        for (motion, _), move, k_n, grip in zip(self.joints, here.moves, here.k_n, here.grips, strict=True):
-            k_t = np.where(grip.sliding(move[:, 1:]), 0.0, grip.k_t)
+        for (motion, _), move, k_n, slip_state in zip(self.joints, here.moves, here.k_n, here.slip_states, strict=True):
+            k_t = np.where(slip_state.sliding(move[:, 1:]), 0.0, slip_state.k_t)
             found.append(motion.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
         return found
 
     def _state(self, u: Array, here: _There, size: float, steps: int) -> PreloadState:
         slipping = []
-        for (motion, _), move, grip in zip(self.joints, here.moves, here.grips, strict=True):
-            slides = grip.sliding(move[:, 1:])
+        for (motion, _), move, slip_state in zip(self.joints, here.moves, here.slip_states, strict=True):
+            slides = slip_state.sliding(move[:, 1:])
             slipping.append(float(motion.weights @ slides / motion.weights.sum()))
         return PreloadState(
             pressures=tuple(here.pressures),
@@ -208,7 +210,7 @@ def evenly_pressed(stiffness: Array, joints: Sequence[tuple[Any, JointLaw]], loa
         push, tangents, laid = load, [], []
         for (motion, law), mean in zip(joints, means, strict=True):
             k_n, k_t = (float(k) for k in law.stiffness(np.asarray(mean)))
-            tangents.append(sprung(motion.quick, motion.weights[:, None] * np.array([k_n, k_t, k_t])))
+            tangents.append(joint_stiffness(motion.quick, motion.weights[:, None] * np.array([k_n, k_t, k_t])))
             laid.append((k_n, mean - k_n * (float(law.approach(mean)) + motion.gap)))
             local = np.zeros((len(motion.gap), 3))
             local[:, 0] = laid[-1][1] * motion.weights

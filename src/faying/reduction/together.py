@@ -68,7 +68,7 @@ def _train_static(reduction: Reduction, variants: Sequence[Gapped], tolerance: f
         right = np.asfortranarray(np.stack(residuals, axis=1))
         answers = reduction.factor.solve(right)
         work = np.maximum(np.einsum("ij,ij->j", right, answers), 0.0)
-        sizes = np.array([pressed(reduction.traces, variants[k].laws, found[k]) for k in poor])
+        sizes = np.array([pressed(reduction.interfaces, variants[k].laws, found[k]) for k in poor])
         far = np.sqrt(work) / sizes >= tolerance
         poor = [k for k, is_far in zip(poor, far, strict=True) if is_far]
         if not poor:
@@ -97,7 +97,7 @@ def _train_dynamic(
             mends += [answers[:, span][:, far] / np.sqrt(size[far]) for span in spans]
             poor[k] = poor[k][far]
             at += len(parts) * len(size)
-        mends = [mend for mend in mends if mend.shape[1]]
+        mends = [correction for correction in mends if correction.shape[1]]
         if not mends:
             return
         if not reduction.dynamic.add(np.concatenate(mends, axis=1), least=LEFT_OUT * tolerance):

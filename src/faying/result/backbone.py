@@ -27,7 +27,7 @@ SHORT = 1e-3  # step of the logarithm of the amplitude for the slope of the freq
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Witness:
+class QuasiStaticCheck:
     """The same mode from statics alone: a quasi-static cycle under inertia forces, at some of the amplitudes."""
 
     amplitude: Array = variable("witness", unit="m kg^1/2", long_name="modal amplitude")
@@ -144,7 +144,7 @@ class Backbone(Recorded):
     )
     measured_source: str = ""
     laws: tuple[str, ...] = ()
-    witness: Witness | None = None
+    witness: QuasiStaticCheck | None = None
     bounds: ErrorBounds = field(default_factory=ErrorBounds)
     notes: tuple[Note, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)

@@ -365,7 +365,7 @@ def from_group(kind: type[Whole], group: Group) -> Whole:
     for f in fields(cast(Any, kind)):
         meta: Declared | None = f.metadata.get(KEY)
         name, hint = f.name, _without_none(hints[f.name])
-        held = None if meta is None else _held(group, f.name, meta)
+        held = None if meta is None else _variable_of(group, f.name, meta)
         if meta is not None and held is not None:
             given[f.name] = held.values.astype(meta.dtype)
         elif meta is None and name in group.variables and name not in group.attributes:  # else labels of its name
@@ -395,7 +395,7 @@ def from_group(kind: type[Whole], group: Group) -> Whole:
     return kind(**given)
 
 
-def _held(group: Group, field_name: str, meta: Declared) -> Variable | None:
+def _variable_of(group: Group, field_name: str, meta: Declared) -> Variable | None:
     """The variable of a field, in its group or, as in files of earlier versions, in the root; None where absent."""
     inner = group.groups.get(meta.group) if meta.group else group
     name = meta.name or field_name

@@ -318,7 +318,7 @@ class Result(Recorded):
         long_name="share of the joints' stiffness where their law is outside its validity range",
         group="joints",
     )
-    beyond_share: Array = variable(
+    above_range_share: Array = variable(
         "load",
         unit="1",
         long_name="share of the joints above the end of their law",
@@ -403,7 +403,7 @@ class Result(Recorded):
     level_error: Array | None = variable(
         "load", "level", "mode", unit="1", long_name="error of damping by slip", default=None, group="modes"
     )
-    beyond_frequencies: Array | None = variable(
+    above_range_frequencies: Array | None = variable(
         "load",
         "mode",
         unit="Hz",
@@ -412,7 +412,7 @@ class Result(Recorded):
         group="modes",
         name="frequency_bonded_above",
     )
-    beyond_loss_factors: Array | None = variable(
+    above_range_loss_factors: Array | None = variable(
         "load",
         "mode",
         unit="1",
@@ -491,7 +491,7 @@ class Result(Recorded):
         group="laws",
         name="loss_factor",
     )
-    alternative_beyond_frequencies: Array | None = variable(
+    alternative_above_range_frequencies: Array | None = variable(
         "law",
         "load",
         "mode",
@@ -512,7 +512,7 @@ class Result(Recorded):
         group="laws",
         name="outside_share",
     )
-    alternative_beyond_share: Array | None = variable(
+    alternative_above_range_share: Array | None = variable(
         "law",
         "load",
         unit="1",

@@ -71,7 +71,7 @@ class PartFolder:
         shutil.rmtree(self.path, ignore_errors=True)
 
 
-class Kept:
+class PartFile:
     """What long work keeps in OUT.part; without an output nothing is kept.
 
     It is a context: at the end it lets go of the folder, and removes it where Faying has refused the work before

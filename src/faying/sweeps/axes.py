@@ -14,7 +14,7 @@ from faying.misuse import checked_call
 from faying.study.keys.surface import Surface
 from faying.study.keys.varied import MODEL, OWN, formed, swept
 from faying.study.study import Study
-from faying.sweeps.variation import Point, check_key
+from faying.sweeps.variation import StudyVariant, check_key
 
 MOST = 1_000_000  # points of a grid
 
@@ -142,11 +142,11 @@ class Grid:
         found = (axis.key.split(".") for axis in self.axes)
         return tuple(dict.fromkeys(parts[1] for parts in found if parts[0] == "part"))
 
-    def point(self, index: int) -> Point:
+    def point(self, index: int) -> StudyVariant:
         """Return the study at one place of the grid."""
         place = np.unravel_index(index, self.shape)
         forces = np.array(self.study.preloads[-1].forces)
-        point = Point(study=self.study, surfaces=self.surfaces, forces=forces)
+        point = StudyVariant(study=self.study, surfaces=self.surfaces, forces=forces)
         for axis, i in zip(self.axes, place, strict=True):
             point = point.with_value(axis.key, axis.values[i])
         return point

@@ -11,7 +11,7 @@ from faying import netcdf
 from faying.files import write_arrays
 from faying.netcdf import Variable
 from faying.reduction.reduced import ReducedModel
-from faying.study.part_folder import Kept, load_arrays
+from faying.study.part_folder import PartFile, load_arrays
 from faying.sweeps.axes import Axis, Grid
 from faying.typing import Array
 
@@ -23,7 +23,7 @@ class Sweep:
     """A finished sweep over a grid of shape g.
 
     axes; frequencies [Hz], loss_factors [-] (*g, modes); estimate [-], greatest_pressure [Pa], open_share and
-    beyond_share [-] (*g): NaN where a point has no answer, for the reason in `reasons` (text -> number of points).
+    above_range_share [-] (*g): NaN where a point has no answer, for the reason in `reasons` (text -> number of points).
     estimate: relative change of the frequencies when the last part of the basis is left out, far above their error;
     basis: sizes of the bases for equilibrium and vibration; found: points that an interrupted sweep had left; path: the
     NetCDF file.
@@ -36,7 +36,7 @@ class Sweep:
     estimate: Array
     greatest_pressure: Array
     open_share: Array
-    beyond_share: Array
+    above_range_share: Array
     reasons: dict[str, int]
     tolerance: float
     unknowns: int
@@ -61,12 +61,12 @@ class Sweep:
             "basis": {"equilibrium": self.basis[0], "vibration": self.basis[1]},
             "without_answer": self.reasons,
             "found": self.found,
-            "beyond_law": int(np.count_nonzero(self.beyond_share > BEYOND)),
+            "beyond_law": int(np.count_nonzero(self.above_range_share > BEYOND)),
             "file": str(self.path),
         }
 
 
-class SweepStore(Kept):
+class SweepStore(PartFile):
     """The folder OUT.part beside the output: the reduced model and every chunk that is done."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = (
@@ -75,7 +75,7 @@ class SweepStore(Kept):
         "estimate",
         "greatest_pressure",
         "open_share",
-        "beyond_share",
+        "above_range_share",
     )
 
     def __init__(self, out: Path, fingerprint: str, size: int, count: int) -> None:

@@ -17,15 +17,15 @@ from faying.study.study import Study
 from faying.sweeps.axes import Axis, Grid
 from faying.sweeps.files import Sweep, SweepStore
 from faying.sweeps.parallel import each
-from faying.sweeps.recipe import Recipe, contact_shares
 from faying.sweeps.trainer import FAR, Trainer
+from faying.sweeps.variant_builder import VariantBuilder, contact_shares
 from faying.typing import Array
 
 CHUNK = 25  # evaluations between two writings to disk
 MOST_LAWS = 100  # looked at before there is a mesh
 
 
-def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dict[str, Array]:
+def evaluate(model: ReducedModel, recipe: VariantBuilder, indices: Sequence[int]) -> dict[str, Array]:
     """Evaluate some points; rows of what the sweep stores, NaN where a point has no answer, and `reasons`."""
     rows: dict[str, list[Any]] = {name: [] for name in (*SweepStore.COLUMNS, "reasons")}
     weights = np.concatenate(model.weights)
@@ -38,7 +38,7 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
             "estimate": np.nan,
             "greatest_pressure": np.nan,
             "open_share": np.nan,
-            "beyond_share": np.nan,
+            "above_range_share": np.nan,
         }
         reason = ""
         try:
@@ -50,7 +50,7 @@ def evaluate(model: ReducedModel, recipe: Recipe, indices: Sequence[int]) -> dic
             row |= {
                 "estimate": found.estimate.max(),
                 "greatest_pressure": np.concatenate(found.preload.pressures).max(),
-                "beyond_share": beyond,
+                "above_range_share": beyond,
                 "open_share": open_share,
             }
             lost = found.loss_factors if any(law.predicts_loss for law in laws) else nothing
@@ -103,7 +103,7 @@ def sweep(
     mark = fingerprint(study, tuple(axes), tolerance)
     with SweepStore(Path(out), mark, grid.size, study.modes.count) as store:
         report("mesh", 0, 0)
-        trainer, model = _begun(study, grid, store, tolerance, report)
+        trainer, model = _first_bases(study, grid, store, tolerance, report)
         report("evaluations", store.found, grid.size)
         # within a chunk each point starts from the last; chunks are the same after an interruption, so the answers are
         path = grid.winding()
@@ -117,7 +117,7 @@ def sweep(
         return store.written(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
 
 
-def _begun(
+def _first_bases(
     study: Study, grid: Grid, store: SweepStore, tolerance: float, report: Report
 ) -> tuple[Trainer, ReducedModel]:
     """What makes the bases, and the model in them: made now, or left by an interrupted sweep."""
@@ -158,7 +158,7 @@ def _check(study: Study, tolerance: float) -> None:
         raise InputError('a sweep takes springs per area; leave out springs = "per-node", or run studies one by one')
 
 
-def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, recipe: Recipe) -> ReducedModel:
+def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, recipe: VariantBuilder) -> ReducedModel:
     """Train on the points whose estimate is far beyond the tolerance, until none is left or nothing is gained."""
     for _ in range(20):
         far = np.flatnonzero(store.rows["estimate"] > FAR * trainer.tolerance)

@@ -14,7 +14,7 @@ from faying.reduction.part_shares import PartShares
 from faying.reduction.reduce import STATIC_SHARE, Reduction
 from faying.reduction.reduced import ReducedModel
 from faying.study.study import Study
-from faying.sweeps.recipe import Design, JointPlacement, Recipe
+from faying.sweeps.variant_builder import Design, JointPlacement, VariantBuilder
 from faying.typing import Array
 
 CORNERS, RANDOM, CHECKS = 16, 8, 5  # variants trained on, and those that are looked at afterwards
@@ -28,7 +28,9 @@ SEED = 20241121
 class Trainer:
     """Makes the bases when they are first needed, and enriches them at points of the design."""
 
-    def __init__(self, study: Study, structure: Structure, recipe: Recipe, tolerance: float, report: Report) -> None:
+    def __init__(
+        self, study: Study, structure: Structure, recipe: VariantBuilder, tolerance: float, report: Report
+    ) -> None:
         self.study, self.structure, self.recipe, self.tolerance = study, structure, recipe, tolerance
         self.report = report
         self.reduction: Reduction | None = None
@@ -39,7 +41,7 @@ class Trainer:
         mesh = checked_mesh(study)
         pairs = tuple(materials_at(study, mesh, joint) for joint in study.joints)
         structure = structure_of(study, mesh, design.surfaces)
-        recipe = Recipe(design=design, pairs=pairs, places=JointPlacement.all(structure, design))
+        recipe = VariantBuilder(design=design, pairs=pairs, places=JointPlacement.all(structure, design))
         return cls(study, structure, recipe, tolerance, report)
 
     def model(self, more: Sequence[int] = (), learn: Sequence[int] = ()) -> ReducedModel:
@@ -56,7 +58,7 @@ class Trainer:
         if self.reduction is None:
             points = design.corners(CORNERS)
             points += generator.choice(design.size, min(RANDOM, design.size), replace=False).tolist()
-            self.reduction = self._begun([design.middle, *points])
+            self.reduction = self._first_bases([design.middle, *points])
             self._train(self.reduction, [*points, *more], "training")
             self.reduction.compress(self.tolerance)
             # a form changes which points touch: more of its grid is looked at
@@ -83,7 +85,7 @@ class Trainer:
         parts = self.recipe.design.varied_parts
         return PartShares.of(self.structure, parts) if parts else None
 
-    def _begun(self, points: Sequence[int]) -> Reduction:
+    def _first_bases(self, points: Sequence[int]) -> Reduction:
         """Bases from the first of the points that has an answer; raises what the first of them met where none has."""
         fault: FayingError | None = None
         for index in dict.fromkeys(points):

@@ -46,7 +46,7 @@ def check_key(study: Study, key: str, *, models: bool, where: str) -> None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Point:
+class StudyVariant:
     """A study and its surfaces with some values put in.
 
     Args:
@@ -62,7 +62,7 @@ class Point:
     stiffness: Mapping[str, float] = field(default_factory=dict)
     scales: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
-    def with_value(self, key: str, value: Any) -> "Point":
+    def with_value(self, key: str, value: Any) -> "StudyVariant":
         """The same with one more value, in SI units, put in."""
         study, parts = self.study, key.split(".")
         room, name = parts[0], parts[-1]
@@ -90,7 +90,7 @@ class Point:
         joints = tuple(replace(j, **{name: value}) if j.name in which else j for j in study.joints)
         return replace(self, study=replace(study, joints=joints))
 
-    def with_scales(self, parts: Iterable[str], *, stiffness: float = 1.0, mass: float = 1.0) -> "Point":
+    def with_scales(self, parts: Iterable[str], *, stiffness: float = 1.0, mass: float = 1.0) -> "StudyVariant":
         """The same with the stiffness and the mass of some parts scaled once more."""
         scales = dict(self.scales)
         for part in parts:

@@ -353,7 +353,7 @@ class JK(ContactLaw):
         return [mu**2 * slip_share(X) * w for X, w in zip(self._shear(parts), parts["energy_t"], strict=True)]
 
     @cached_property
-    def _held(self) -> tuple[float, float]:
+    def _end_damping(self) -> tuple[float, float]:
         """Normal and tangential specific damping with which the small stage ends."""
         parts = self._parts(np.array(min(max(self.limits[0], 1e-80), 1e80)))
         return float(self._capacity(parts["energy_n"])), float(self._capacity(self._energy_t(parts)))
@@ -371,7 +371,7 @@ class JK(ContactLaw):
         if self.loss == "literal":
             return normal, tangential
         held = al >= self.limits[0]
-        return np.where(held, self._held[0], normal), np.where(held, self._held[1], tangential)
+        return np.where(held, self._end_damping[0], normal), np.where(held, self._end_damping[1], tangential)
 
     @property
     def assumptions(self) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from faying.study.keys.uncertain import Input, UncertainChoice
 from faying.study.keys.varied import MODEL, formed
 from faying.study.study import Study
 from faying.surface.estimators.base import EstimateScatter
-from faying.sweeps.variation import Point, check_key
+from faying.sweeps.variation import StudyVariant, check_key
 from faying.typing import Array
 
 LEVEL = "surface.level"  # of the spectrum in the middle of its band, at a given D
@@ -79,7 +79,7 @@ class Inputs:
         weights = [weight for _, weight in self.models]
         return sum(weights[:law]) + 0.5 * weights[law]
 
-    def put(self, point: Point, values: Array, original: Study) -> Point:
+    def put(self, point: StudyVariant, values: Array, original: Study) -> StudyVariant:
         """The point with values (d,) put in; the materials of `original` are those of the matrices."""
         named = dict(zip(self.names, values.tolist(), strict=True))
         if self.scatter is not None:
@@ -134,7 +134,9 @@ def _uniform() -> Distribution:
     return Distribution(kind="uniform", centre=0.5, spread=0.5)
 
 
-def _with_surface(point: Point, scatter: tuple[EstimateScatter, float, float], named: dict[str, float]) -> Point:
+def _with_surface(
+    point: StudyVariant, scatter: tuple[EstimateScatter, float, float], named: dict[str, float]
+) -> StudyVariant:
     """Put in D and the G that goes with it and with the level."""
     rule, D0, G0 = scatter
     D = named.pop("surface.D")
@@ -204,7 +206,7 @@ class Ensemble:
     values: Array
     training: int
     # the last sample asked for, at all loads: its points differ in the forces alone
-    _last: dict[int, Point] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _last: dict[int, StudyVariant] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @classmethod
     def of(cls, study: Study, count: int, seed: int) -> "Ensemble":
@@ -277,7 +279,7 @@ class Ensemble:
         found = [0, self.middle, *(sample * self.loads + ends[sample % 2] for sample in range(1, self.training))]
         return list(dict.fromkeys(found))[: max(most, self.training + 1)]
 
-    def point(self, index: int) -> Point:
+    def point(self, index: int) -> StudyVariant:
         """The study at one sample and load."""
         sample, load = divmod(index, self.loads)
         if sample not in self._last:
@@ -287,11 +289,11 @@ class Ensemble:
         found = self._last[sample]
         return replace(found, forces=found.forces[load])
 
-    def _at(self, sample: int) -> Point:
+    def _at(self, sample: int) -> StudyVariant:
         """The study at one sample, with the forces [N] of all loads (loads, b)."""
         forces = np.array([one.forces for one in self.study.preloads])
         try:
-            point = Point(study=self.study, surfaces=self.surfaces, forces=forces)
+            point = StudyVariant(study=self.study, surfaces=self.surfaces, forces=forces)
             return self.inputs.put(point, self.values[sample], self.study)
         except FayingError as fault:
             raise InputError(f"a sample of the study cannot be: {fault}") from None

@@ -21,8 +21,8 @@ from faying.progress import Report, silent
 from faying.reduction.reduced import ReducedModel, Variant
 from faying.study.keys.test import TestChoice
 from faying.sweeps.parallel import Rows, each
-from faying.sweeps.recipe import Recipe, contact_shares
 from faying.sweeps.trainer import Trainer
+from faying.sweeps.variant_builder import VariantBuilder, contact_shares
 from faying.typing import Array, Index
 
 TRAINED = 1.5e-4  # relative error of a frequency where the bases are trained
@@ -51,7 +51,7 @@ class Evaluator:
     """
 
     model: ReducedModel
-    recipe: Recipe
+    recipe: VariantBuilder
     seen: tuple[Array, Array] | None = None
     test: TestChoice | None = None
     median: tuple[Variant, ...] = ()
@@ -77,7 +77,7 @@ class Evaluator:
                 "modes": np.full(tested, np.nan),
                 "estimate": np.full(ensemble.loads, np.nan),
                 "open_share": np.full(ensemble.loads, np.nan),
-                "beyond_share": np.full(ensemble.loads, np.nan),
+                "above_range_share": np.full(ensemble.loads, np.nan),
                 "reasons": "",
             }
             try:
@@ -132,7 +132,7 @@ class Evaluator:
             "modes": self._modes(model, found, names),
             "estimate": np.array([one.estimate.max() for one in found]),
             "open_share": np.array([share for share, _ in shares]),
-            "beyond_share": np.array([share for _, share in shares]),
+            "above_range_share": np.array([share for _, share in shares]),
         }
 
     def _modes(self, model: ReducedModel, found: Sequence[Variant], names: Index) -> Array:

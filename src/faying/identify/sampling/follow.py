@@ -21,7 +21,7 @@ from faying.result.backbone import Backbone
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.study import Study
 from faying.sweeps.parallel import Rows, each
-from faying.sweeps.recipe import Recipe
+from faying.sweeps.variant_builder import VariantBuilder
 from faying.typing import Array
 
 FEWEST = 8  # backbones
@@ -77,7 +77,7 @@ class Follower:
     """
 
     structure: Structure
-    recipe: Recipe
+    recipe: VariantBuilder
     choice: BackboneChoice
     shape: Array
 
@@ -94,7 +94,7 @@ class Follower:
             store.keep_rows("median", 0, kept)
         x, y, z = kept["at"].tolist()
         # what is assembled is not sent to other processes
-        structure = replace(trainer.structure, frame=None)
+        structure = replace(trainer.structure, assembled=None)
         return cls(structure=structure, recipe=recipe, choice=replace(choice, at=(x, y, z)), shape=kept["shape"])
 
     @property

@@ -3,7 +3,7 @@
 from faying.files import write_arrays
 from faying.reduction.reduce import Reduction
 from faying.reduction.reduced import ReducedModel
-from faying.study.part_folder import Kept, load_arrays
+from faying.study.part_folder import PartFile, load_arrays
 from faying.sweeps.files import kept_model
 from faying.sweeps.parallel import Rows
 from faying.typing import Array
@@ -11,7 +11,7 @@ from faying.typing import Array
 Bases = tuple[ReducedModel, tuple[Array, Array] | None]
 
 
-class SampleStore(Kept):
+class SampleStore(PartFile):
     """The folder OUT.part beside the output; without an output nothing is kept."""
 
     def model(self) -> Bases | None:

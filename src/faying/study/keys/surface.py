@@ -7,7 +7,7 @@ from typing import Any
 
 from faying import cache, units
 from faying.contact.inputs import FractalSurface, RoughSurface
-from faying.contact.two_faces import COUNTERS, Counter, Faces
+from faying.contact.two_faces import COUNTERS, Counter, RoughPair
 from faying.errors import InputError
 from faying.form.waviness import ScanWaves
 from faying.study.declaration.declared import QUANTITY, Declared, file, length_unit, number, own, quantity, text
@@ -59,7 +59,7 @@ class SurfaceChoice:
         """Read and fit the scan, or take D, G and the area as given. Raises ReadError and InputError."""
         if self.scan is None:
             inputs = FractalSurface(D=self.D or 0.0, G=self.G or 0.0, scan_area=self.scan_area or 0.0)
-            return Surface(faces=Faces(face=inputs, stated="given in the study"), origin="given in the study")
+            return Surface(faces=RoughPair(face=inputs, stated="given in the study"), origin="given in the study")
         scan = read_scan(self.scan, xy_unit=self.xy_unit, z_unit=self.z_unit, size=self.size, spacing=self.spacing)
         other: Counter = self.counter
         if self.counter not in COUNTERS:
@@ -67,7 +67,7 @@ class SurfaceChoice:
             if not isinstance(found, Scan):
                 raise InputError(f"{Path(self.counter).name} is a line scan; two faces need two areal scans")
             other = found
-        faces = Faces(
+        faces = RoughPair(
             face=scan,
             counter=other,
             method=self.method,
@@ -108,7 +108,7 @@ class Surface:
         origin, source: the file, and a line on it.
     """
 
-    faces: Faces | None
+    faces: RoughPair | None
     origin: str
     source: str = ""
 

@@ -96,7 +96,7 @@ def _refuse_more(path: Path, rows: list[list[float]], columns: int) -> None:
     """Raise ReadError where rows are x, y, z and more: one of the first two numbers runs on while the other stays."""
     first, second = np.array(rows)[:, :2].T
     stays = [int(np.argmax(np.append(values != values[0], True))) for values in (first, second)]
-    if columns <= 6 and (_even(first[: stays[1]]) or _even(second[: stays[0]])):
+    if columns <= 6 and (_in_equal_steps(first[: stays[1]]) or _in_equal_steps(second[: stays[0]])):
         raise ReadError(
             f"{path}: rows of {columns} numbers, of which the first two run over a grid: x, y, z and {columns - 3} "
             f"column{'s' * (columns > 4)} more; leave only x, y, z in the file"
@@ -224,7 +224,10 @@ def _line_by_line(path: Path, how: TextLayout) -> Array:
 
 def _refuse_positions(path: Path, data: Array) -> None:
     """Raise ReadError where a matrix of heights holds positions or numbers of rows."""
-    row, column = _even(data[0, 1:]) and not _even(data[1, 1:]), _even(data[1:, 0]) and not _even(data[1:, 1])
+    row, column = (
+        _in_equal_steps(data[0, 1:]) and not _in_equal_steps(data[1, 1:]),
+        _in_equal_steps(data[1:, 0]) and not _in_equal_steps(data[1:, 1]),
+    )
     if row or column:
         which = " and ".join(["the first row"] * row + ["the first column"] * column)
         raise ReadError(
@@ -233,7 +236,7 @@ def _refuse_positions(path: Path, data: Array) -> None:
         )
 
 
-def _even(values: Array) -> bool:
+def _in_equal_steps(values: Array) -> bool:
     """Whether four numbers or more rise or fall in equal steps."""
     if len(values) < 4 or not np.isfinite(values).all():
         return False

@@ -12,7 +12,7 @@ from faying.typing import Index
 
 @final
 @dataclass(frozen=True, kw_only=True)
-class Corners:
+class VertexRestriction:
     """The corners of the elements, and how all nodes move with them: the middle of an edge as the mean of its ends.
 
     Args:
@@ -24,7 +24,7 @@ class Corners:
     spread: Any
 
     @classmethod
-    def of(cls, mesh: Mesh) -> "Corners | None":
+    def of(cls, mesh: Mesh) -> "VertexRestriction | None":
         """The corners of a mesh; None where every node is one."""
         from scipy.sparse import csr_array, kron
 

@@ -10,11 +10,11 @@ import numpy as np
 from faying.bolt.bolt import Bolt, FittedBolt, each_in_its_place
 from faying.bolt.dowel import Dowel, FittedDowel
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
-from faying.fe.corners import Corners
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.mesh import Mesh
 from faying.fe.sides import nodes_of
 from faying.fe.tied import tie_stiffness
+from faying.fe.vertices import VertexRestriction
 from faying.joint.attachments import PointMass, Support
 from faying.memory import available
 from faying.mpi.over_mpi import OverMpi, processes_named
@@ -27,22 +27,22 @@ STILL = 1e-12  # of the greatest stiffness of an unknown: what a motion may ask 
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Frame:
+class AssembledParts:
     """Parts, bolts, dowels, supports and masses of a structure, and the faces that its joints join; see `Structure`."""
 
     mesh: Mesh
     materials: Mapping[str, Solid]
-    joined: tuple[str, ...]
+    joint_faces: tuple[str, ...]
     bolts: tuple[Bolt | SolidBolt, ...]
     supports: tuple[Support, ...]
     masses: tuple[PointMass, ...]
     dowels: tuple[Dowel, ...] = ()
 
-    def same(self, other: "Frame") -> bool:
+    def same(self, other: "AssembledParts") -> bool:
         """Whether two frames are made of the same things."""
         mine = (self.mesh, self.materials, self.bolts, self.supports, self.masses, self.dowels)
         others = (other.mesh, other.materials, other.bolts, other.supports, other.masses, other.dowels)
-        return self.joined == other.joined and all(a is b for a, b in zip(mine, others, strict=True))
+        return self.joint_faces == other.joint_faces and all(a is b for a, b in zip(mine, others, strict=True))
 
     @cached_property
     def matrices(self) -> tuple[Any, Any]:
@@ -56,9 +56,9 @@ class Frame:
         return tie_stiffness(self.mesh, faces, modulus)
 
     @cached_property
-    def corners(self) -> Corners | None:
+    def vertices(self) -> VertexRestriction | None:
         """The corners of the elements; None where every node is one."""
-        return Corners.of(self.mesh)
+        return VertexRestriction.of(self.mesh)
 
     @cached_property
     def fixed(self) -> Index:
@@ -69,11 +69,11 @@ class Frame:
     @cached_property
     def fitted_bolts(self) -> tuple[FittedBolt | FittedSolidBolt, ...]:
         """The bolts in their places."""
-        joined = [*self.joined, *(support.face for support in self.supports)]
+        joint_faces = [*self.joint_faces, *(support.face for support in self.supports)]
         fitted = tuple(
             bolt.fitted(self.mesh, self.materials)
             if isinstance(bolt, Bolt)
-            else bolt.fitted(self.mesh, self.matrices[0], joined)
+            else bolt.fitted(self.mesh, self.matrices[0], joint_faces)
             for bolt in self.bolts
         )
         each_in_its_place([bolt for bolt in fitted if isinstance(bolt, FittedBolt)])
@@ -92,28 +92,28 @@ class Frame:
         return np.stack([bolt.load for bolt in self.fitted_bolts], axis=1)
 
     @cached_property
-    def _upheld(self) -> Any:
+    def _supported(self) -> Any:
         """Stiffness [N/m] of the parts, of dowels and of elastic supports."""
         K = added(self.matrices[0], [dowel.stiffness for dowel in self.fitted_dowels])
         return added(K, [support.springs(self.mesh) for support in self.supports])
 
     @cached_property
-    def standing(self) -> Any:
+    def supported_stiffness(self) -> Any:
         """Stiffness [N/m] of the parts, of dowels and of elastic supports, before any bolt is tight."""
-        return added(self._upheld, [-bolt.released for bolt in self.fitted_bolts if bolt.released is not None])
+        return added(self._supported, [-bolt.released for bolt in self.fitted_bolts if bolt.released is not None])
 
     @cached_property
-    def vibrating(self) -> tuple[Any, Any]:
+    def dynamic_matrices(self) -> tuple[Any, Any]:
         """Stiffness [N/m] and mass [kg] without the joints, but with bolts, supports and masses; fixed ones cleared."""
-        K = added(self._upheld, [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None])
+        K = added(self._supported, [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None])
         M = added(self.matrices[1], [one.mass for one in (*self.fitted_bolts, *self.fitted_dowels)])
         M = added(M, [mass.matrix(self.mesh) for mass in self.masses])
         return constrain(K, self.fixed), constrain(M, self.fixed, 0.0)
 
-    def held_back(self, displacement: Array) -> Array:
+    def elastic_forces(self, displacement: Array) -> Array:
         """Forces [N] (unknowns,) with which parts, dowels, springs and tight bolts resist a displacement [m]."""
         tight = [bolt.stiffness for bolt in self.fitted_bolts if bolt.released is None and bolt.stiffness is not None]
-        return np.asarray(sum((one @ displacement for one in tight), self._upheld @ displacement))
+        return np.asarray(sum((one @ displacement for one in tight), self._supported @ displacement))
 
     def inertia(self, acceleration: Array) -> Array:
         """Mass of all that moves times an acceleration [m/s2] (unknowns,), unknowns that are fixed too.
@@ -126,7 +126,7 @@ class Frame:
         return np.asarray(sum(given, self.matrices[1] @ acceleration))
 
     @property
-    def is_bare(self) -> bool:
+    def is_parts_only(self) -> bool:
         """Whether parts and supports are all that vibrates: bolts, dowels and masses add nothing."""
         if self.masses or self.dowels:
             return False
@@ -162,7 +162,7 @@ class Frame:
     def by_parts(self) -> PartByPart:
         """What factorises the matrices of the structure part by part; the factors of the parts serve all laws."""
         mesh = self.mesh
-        faces = {*self.joined, *(support.face for support in self.supports)}
+        faces = {*self.joint_faces, *(support.face for support in self.supports)}
         faces |= {face for bolt in self.bolts for face in bolt.faces}
         faces |= {wall for dowel in self.dowels for wall in dowel.walls}
         faces |= {mass.face for mass in self.masses if mass.face is not None}
@@ -186,9 +186,9 @@ class Frame:
     def _over_mpi(self) -> dict[int, OverMpi]:
         return {}
 
-    def loose(self) -> Array:
+    def unjoined_motions(self) -> Array:
         """Motions (unknowns, r) of the bodies, each rigid by itself, that nothing resists with all joints apart."""
-        mesh, (stiffness, _) = self.mesh, self.vibrating
+        mesh, (stiffness, _) = self.mesh, self.dynamic_matrices
         motions = np.zeros((mesh.unknowns, 6 * len(mesh.bodies)))
         for number, body in enumerate(mesh.bodies):
             nodes = mesh.body_nodes(body)

@@ -6,8 +6,8 @@ from scipy.optimize import brentq
 from scipy.sparse import csr_array, diags_array
 
 from faying.errors import NotConverged
+from faying.numerics.modal_reanalysis import Measure, ModalReanalysis, _sharper, nearby_modes
 from faying.numerics.modes import lowest_modes
-from faying.numerics.nearby import Measure, NearbyModes, _sharper, nearby_modes
 from faying.numerics.solve import factorise
 
 N = 60
@@ -44,7 +44,7 @@ def test_the_same_spring_gives_the_same_modes():
 def test_the_error_that_is_said_is_not_much_less_than_the_true_one(factor, tolerance):
     """Also where it was taken from the diagonal; the inverse that measures it leaves out what lies near a mode."""
     K, M = chain(1e5)
-    near = NearbyModes(lowest_modes(K, M, 12, shift_frequency=5.0), K, M, rigid=1)
+    near = ModalReanalysis(lowest_modes(K, M, 12, shift_frequency=5.0), K, M, rigid=1)
     changed = chain(1e5 * factor)[0]
     found = near.under(changed, 6, tolerance=tolerance)
     wanted = lowest_modes(changed, M, 7, shift_frequency=5.0).frequencies[1:]
@@ -56,7 +56,7 @@ def test_the_error_that_is_said_is_not_much_less_than_the_true_one(factor, toler
 def test_another_factorisation_on_the_way_changes_nothing_but_the_rounds():
     K, M = chain(1e5)
     modes = lowest_modes(K, M, 12, shift_frequency=5.0)
-    near = NearbyModes(modes, K, M, rigid=1)
+    near = ModalReanalysis(modes, K, M, rigid=1)
     changed = chain(1e8)[0]
     with pytest.raises(NotConverged, match="changed springs"):
         near.under(changed, 6, tolerance=1e-12, rounds=1)
@@ -94,7 +94,7 @@ def test_a_mode_of_another_symmetry_that_comes_down_is_found(fraction, count):
     K, M = pair(1e6, BEYOND)
     modes = lowest_modes(K, M, 12, shift_frequency=5.0)
     changed = pair(1e6, at(fraction, count))[0]
-    found = NearbyModes(modes, K, M, rigid=0).under(changed, count)
+    found = ModalReanalysis(modes, K, M, rigid=0).under(changed, count)
     wanted = lowest_modes(changed, M, count, shift_frequency=5.0).frequencies
     assert found.frequencies == pytest.approx(wanted, rel=1e-7)
 
@@ -114,7 +114,7 @@ def test_a_mode_whose_shape_is_not_yet_known_is_watched_above_those_wanted(insid
     modes = lowest_modes(K, M, 4, shift_frequency=5.0)
     changed = pair(1e6, spring, inside)[0]
     wanted = lowest_modes(changed, M, 3, shift_frequency=5.0).frequencies
-    assert NearbyModes(modes, K, M, rigid=0).under(changed, 3).frequencies == pytest.approx(wanted, rel=1e-7)
+    assert ModalReanalysis(modes, K, M, rigid=0).under(changed, 3).frequencies == pytest.approx(wanted, rel=1e-7)
 
 
 def test_a_guessed_energy_is_not_below_one_that_others_have_shown():
@@ -134,7 +134,7 @@ def test_a_guessed_energy_is_not_below_one_that_others_have_shown():
 
 def test_it_is_found_after_a_basis_that_was_cut_back():
     K, M = pair(1e6, BEYOND)
-    near = NearbyModes(lowest_modes(K, M, 12, shift_frequency=5.0), K, M, rigid=0, most=14)
+    near = ModalReanalysis(lowest_modes(K, M, 12, shift_frequency=5.0), K, M, rigid=0, most=14)
     for soft, stiff in ((2e6, 2 * BEYOND), (3e5, BEYOND), (1e5, BEYOND), (3e6, BEYOND), (2e5, BEYOND)):
         near.under(pair(soft, stiff)[0], 6)
     near.under(pair(2.02e5, BEYOND)[0], 6, rounds=2)  # what is left of it serves a stiffness nearby at once

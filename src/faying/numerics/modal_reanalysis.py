@@ -30,7 +30,7 @@ NEIGHBOURS = 10  # modes that are taken to lie as near together as two that are 
 DOUBT = 3.0  # times by which the energy of a residual may have grown against that by the diagonal since the last round
 
 
-class NearbyModes:
+class ModalReanalysis:
     """Modes under one stiffness after another, without another factorisation.
 
     The basis is that of the modes, enriched by what the new modes leave in the new equations, sent through the old
@@ -347,13 +347,13 @@ def near_factor(
     shift_frequency: float,
     spare: int = 0,
     most: int | None = None,
-) -> NearbyModes:
+) -> ModalReanalysis:
     """Find the lowest modes to a few digits by a factorisation at hand, as a basis for exact ones and those nearby.
 
     Args:
         factor: of `stiffness` and `mass` with this shift, in any precision.
         stiffness, mass, count, rigid, shift_frequency, spare: as `refined_modes` takes them.
-        most: as `NearbyModes` takes it.
+        most: as `ModalReanalysis` takes it.
 
     Raises:
         InputError, NotConverged: as `lowest_modes` does.
@@ -370,7 +370,7 @@ def near_factor(
         rigid=rigid,
         tolerance=tolerance,
     )
-    return NearbyModes(modes, stiffness, mass, rigid=rigid.shape[1], most=most)
+    return ModalReanalysis(modes, stiffness, mass, rigid=rigid.shape[1], most=most)
 
 
 def nearby_modes(
@@ -400,7 +400,7 @@ def nearby_modes(
     Raises:
         NotConverged: where the tolerance is not reached.
     """
-    near = NearbyModes(modes, stiffness, mass, rigid=rigid)
+    near = ModalReanalysis(modes, stiffness, mass, rigid=rigid)
     if more is not None and more.shape[1]:
         near.add(more)
     found = near.under(stiffness, count, tolerance=tolerance)

@@ -11,7 +11,7 @@ from faying.contact.mates import Mates
 from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError
 from faying.fe.interface import Interface
-from faying.joint.shared_modes import EXACT, joined, modes_with
+from faying.joint.shared_modes import EXACT, coupled, modes_with
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.notes import Note, percent
@@ -26,7 +26,7 @@ LEAST = 1e-4  # relative change of a frequency that is printed
 
 
 @dataclass(frozen=True, kw_only=True)
-class Beyond:
+class AboveRange:
     """Frequencies [Hz] and loss factors [-] (m,) with the points beyond the end of their law bonded, and notes."""
 
     frequencies: Array
@@ -34,20 +34,22 @@ class Beyond:
     notes: tuple[Note, ...]
 
 
-def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]], held: DampedModes) -> Beyond | None:
+def bonded_above_range(
+    case: Case, load: float, springs: Sequence[Springs[Interface]], held: DampedModes
+) -> AboveRange | None:
     """Solve a case under one preload with the points beyond the end of their law bonded, at no loss there.
 
     Stiffness grows with pressure in every law, so the frequencies lie between those with the stiffness held at the
     law's end, `held`, and these; modes count in rising order. None where no point is beyond.
     """
     structure, study = case.structure, case.study
-    past = [joint.past_end(s) for joint, s in zip(structure.joints, springs, strict=True)]
+    past = [joint.above_range(s) for joint, s in zip(structure.joints, springs, strict=True)]
     if not any(np.any(mask) for mask in past):
         return None
     parts = stiff_as_bonded(structure)
     bonded = [_bonded(s, mask, parts) for s, mask in zip(springs, past, strict=True)]
-    stiffness, loss = joined(case.modal, bonded)
-    mass = structure.vibrating[1]
+    stiffness, loss = coupled(case.modal, bonded)
+    mass = structure.dynamic_matrices[1]
     found = damped_modes(
         modes_with(case.modal, stiffness, mass, rigid=structure.rigid),
         stiffness,
@@ -59,7 +61,7 @@ def bonded_beyond(case: Case, load: float, springs: Sequence[Springs[Interface]]
         tolerance=EXACT,
     )
     notes = _notes(case, load, springs, past, found.frequencies / held.frequencies - 1)
-    return Beyond(frequencies=found.frequencies, loss_factors=found.loss_factors, notes=notes)
+    return AboveRange(frequencies=found.frequencies, loss_factors=found.loss_factors, notes=notes)
 
 
 def stiff_as_bonded(structure: Structure) -> float:

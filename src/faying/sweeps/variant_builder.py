@@ -17,7 +17,7 @@ from faying.materials import Material
 from faying.reduction.part_shares import Scales
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
-from faying.sweeps.variation import Point
+from faying.sweeps.variation import StudyVariant
 from faying.typing import Array
 
 LATELY = 32  # laws kept with their tables
@@ -66,7 +66,7 @@ class Design(Protocol):
     def corners(self, most: int) -> list[int]:
         """At most so many of the points that lie farthest out."""
 
-    def point(self, index: int) -> Point:
+    def point(self, index: int) -> StudyVariant:
         """The study at one point."""
 
 
@@ -108,7 +108,7 @@ class JointPlacement:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Recipe:
+class VariantBuilder:
     """All that makes the laws and forces of a point: the design, and the materials that meet at each joint."""
 
     design: Design
@@ -117,12 +117,12 @@ class Recipe:
     # laws made lately, with their tables: along an axis of preload they stay the same
     _lately: dict[tuple[Any, ...], JointLaw] = field(default_factory=dict, repr=False, compare=False)
     # the last point asked for, with the design that it is of
-    _points: dict[int, tuple[Design, Point]] = field(default_factory=dict, repr=False, compare=False)
+    _points: dict[int, tuple[Design, StudyVariant]] = field(default_factory=dict, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
         return {"design": self.design, "pairs": self.pairs, "places": self.places, "_lately": {}, "_points": {}}
 
-    def _point(self, index: int) -> Point:
+    def _point(self, index: int) -> StudyVariant:
         """The study at one point: asked for three times in turn, made once."""
         known = self._points.get(index)
         if known is not None and known[0] is self.design:
