@@ -23,6 +23,7 @@ SAME_LOAD = 1e-6  # relative difference of preloads that count as one
 Rows = list[list[str]]
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class RunDifference(Summary):
     """How the second of two results differs from the first.
