@@ -1,9 +1,5 @@
 """One study has one answer, whatever engine solves it and whatever memory is free."""
 
-import os
-import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,13 +11,12 @@ from faying.errors import InputError
 from faying.numerics.solve import available
 from faying.study import Study
 from tests.helpers import studies
+from tests.helpers.examples import copied
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted(
     p.relative_to(ROOT) for p in (ROOT / "examples").rglob("*.toml") if p.stem not in ("uncertain", "laws-evidence")
 )
-MEASURED = Path(os.environ.get("FAYING_DATA", ROOT.parent / "shared" / "data")) / "brake-reuss-beam"
-MEASURED = MEASURED / "brb_surface_data.mat"
 by_parts = pytest.mark.skipif("pardiso" not in available(), reason="only PARDISO factorises part by part")
 
 
@@ -79,13 +74,7 @@ def test_a_joint_that_slips_has_one_answer(study):
 @pytest.mark.slow
 @pytest.mark.parametrize("example", EXAMPLES, ids=str)
 def test_every_example_has_one_answer(example, tmp_path):
-    folder = tmp_path / "example"
-    shutil.copytree((ROOT / example).parent, folder, ignore=shutil.ignore_patterns("results", "data"))
-    if (folder / "make_data.py").is_file():
-        if not MEASURED.is_file():
-            pytest.skip(f"the measured interface is absent: {MEASURED}; set FAYING_DATA")
-        subprocess.run([sys.executable, str(folder / "make_data.py"), str(MEASURED)], check=True)
-    study = folder / example.name
+    study = copied(ROOT / example, tmp_path / "example")
     agree(run(study), run(study, engine="direct"))
 
 

@@ -11,6 +11,7 @@ from faying.cli.main import cli
 from faying.cli.run import text as of_run
 from faying.output import terminal
 from faying.study import Study
+from tests.helpers.examples import copied
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDIES = sorted(
@@ -109,7 +110,7 @@ def test_commands_fit(arguments, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: f"{path.parent.name}/{path.name}")
-def test_the_run_of_every_example_fits(path):
-    printed = of_run(faying.run(Study.read(path)))
+def test_the_run_of_every_example_fits(path, tmp_path):
+    printed = of_run(faying.run(Study.read(copied(path, tmp_path / "example"))))
     assert "modes at" in printed
     assert wide(printed) == []
