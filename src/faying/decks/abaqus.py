@@ -18,12 +18,11 @@ import numpy as np
 
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
 from faying.decks.keywords import DATA, Block, blocks, elements, orientations, table
-from faying.decks.raw import Pretension, RawMesh, index, read_text
+from faying.decks.raw import Pretension, RawMesh, index, not_in_file, read_text
 from faying.decks.scope import Items, NumberSpan, Scope, placed, take
 from faying.decks.vocabulary import left_out
 from faying.errors import ReadError
 from faying.fe.elements import SOLIDS
-from faying.text import few
 from faying.typing import Array, Index
 
 
@@ -194,8 +193,7 @@ def _resolved(
             else:
                 found.append(what + shifts[instance])
                 absent = np.setdiff1d(found[-1], everything) - shifts[instance]
-                if absent.size:
-                    notes.append(f"the set {written[name]!r} names numbers that are not in the file: {few(absent)}")
+                notes.extend(not_in_file(f"the set {written[name]!r}", "numbers", absent.tolist()))
         done[name] = np.unique(np.concatenate(found))
         return done[name]
 

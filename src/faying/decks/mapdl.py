@@ -15,10 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
-from faying.decks.raw import Pretension, RawMesh, gathered, index, ranged, undoubled
+from faying.decks.raw import Pretension, RawMesh, gathered, index, not_in_file, ranged, undoubled
 from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, left_out
 from faying.errors import ReadError
-from faying.text import few
 from faying.typing import Array, Index
 
 _SOLIDS = {"185": 8, "186": 20, "187": 10, "285": 4, "45": 8, "95": 20, "92": 10}
@@ -131,9 +130,7 @@ def _lacking(
         out.append(f"{path.name} has no FINISH: it may be cut short")
     for kind, what, there in (("ELEM", "elements", elements), ("NODE", "nodes", nodes)):
         for name, some in sets[kind].items():
-            absent = sorted({*some.tolist()} - there)
-            if absent:
-                out.append(f"the component {name!r} names {what} that are not in the file: {few(absent)}")
+            out += not_in_file(f"the component {name!r}", what, some.tolist(), there)
     return out
 
 

@@ -16,11 +16,20 @@ import numpy as np
 
 from faying.decks.bulk import Bulk, cards, listed, number
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real, springs_of
-from faying.decks.raw import Matrices, RawMesh, both_triangles, face_blocks, gathered, index, once, read_text
+from faying.decks.raw import (
+    Matrices,
+    RawMesh,
+    both_triangles,
+    face_blocks,
+    gathered,
+    index,
+    not_in_file,
+    once,
+    read_text,
+)
 from faying.decks.vocabulary import left_out
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
-from faying.text import few
 from faying.typing import Array, Index
 
 # commands of the case control whose sets are of elements
@@ -63,7 +72,8 @@ def read(path: Path) -> RawMesh:
             raise ReadError(f"{path} ends without ENDDATA; the file is cut short")
         notes.append(f"{path.name} has no ENDDATA: it may be cut short")
     numbers = index(bulk.grids)
-    notes += _absent(bulk)
+    loaded = (fields[1] for fields, _ in bulk.loads if fields[6].upper() != "THRU" and fields[1].isdigit())
+    notes += not_in_file("PLOAD4", "elements", map(int, loaded), bulk.solid.keys() | bulk.others)
     turned = [n for n, (_, _, cd) in bulk.grids.items() if (bulk.default[1] if cd is None else cd) != 0]
     return RawMesh(
         numbers=numbers,
@@ -109,13 +119,6 @@ def _case_sets(path: Path) -> tuple[dict[str, list[tuple[int, int]]], list[str]]
         if sets.pop(name, None) is not None
     ]
     return sets, notes
-
-
-def _absent(bulk: Bulk) -> list[str]:
-    """A note on elements that PLOAD4 cards name and the file does not hold."""
-    named = {int(fields[1]) for fields, _ in bulk.loads if fields[6].upper() != "THRU" and fields[1].isdigit()}
-    absent = sorted(named - bulk.solid.keys() - bulk.others)
-    return [f"PLOAD4 names elements that are not in the file: {few(absent)}"] if absent else []
 
 
 def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, list[int]]]) -> dict[str, Index]:

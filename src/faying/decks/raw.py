@@ -1,6 +1,6 @@
 """What a file holds before it becomes a mesh or matrices: the file's own numbers, its own unit, its sets."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -10,6 +10,7 @@ import numpy as np
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS, SOLIDS
 from faying.memory import available
+from faying.text import few
 from faying.typing import Array, Index
 
 GREATEST = 10**12  # number of a node or an element
@@ -100,6 +101,12 @@ def ranged(first: int, last: int, step: int, where: str) -> Index:
             "numbers"
         )
     return np.arange(first, last + 1, step)
+
+
+def not_in_file(who: str, what: str, numbers: Iterable[int], there: Collection[int] = ()) -> list[str]:
+    """A note on things that something names by their numbers and the file does not hold; none where all are there."""
+    absent = sorted({*numbers}.difference(there))
+    return [f"{who} names {what} that are not in the file: {few(absent)}"] if absent else []
 
 
 def gathered(rows: Mapping[str, list[tuple[int, list[int]]]]) -> dict[str, tuple[Index, Index]]:

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.raw import RawMesh, face_blocks, gathered, index, read_text
+from faying.decks.raw import RawMesh, face_blocks, gathered, index, not_in_file, read_text
 from faying.errors import ReadError
-from faying.text import check_data_sets, few
+from faying.text import check_data_sets
 
 _NODES, _ELEMENTS, _GROUPS = ("2411", "781"), ("2412", "780"), ("2467", "2477", "2452", "2435")
 # code of a finite element: kind, and the places of its nodes, which run round: corner, middle, corner, ...
@@ -80,9 +80,7 @@ def read(path: Path) -> RawMesh:
         )
     faces: dict[str, list[list[int]]] = {}
     for name, (elements, _) in groups.items():
-        absent = sorted({*elements} - held)
-        if absent:
-            notes.append(f"the group {name!r} names elements that are not in the file: {few(absent)}")
+        notes += not_in_file(f"the group {name!r}", "elements", elements, held)
         on = [shells[e] for e in elements if e in shells]
         if on:
             faces[name] = on
