@@ -13,17 +13,22 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
-from faying.decks.keywords import DATA, Block, blocks, elements, orientations, table
-from faying.decks.raw import Pretension, RawMesh, index, not_in_file, read_text
+from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real, reals
+from faying.decks.keywords import DATA, Block, blocks, elements, interaction, orientations
+from faying.decks.raw import Pretension, RawMesh, index, joined, not_in_file, read_text
 from faying.decks.scope import Items, NumberSpan, Scope, placed, take
 from faying.decks.vocabulary import left_out
 from faying.errors import ReadError
 from faying.fe.elements import SOLIDS
-from faying.typing import Array, Index
+from faying.typing import Index
+
+STRUCTURAL = (
+    "loss as a structural damping matrix, the imaginary part of the stiffness; frequency-domain steps with SIM only"
+)
 
 
 def read(path: Path) -> RawMesh:
@@ -90,11 +95,7 @@ def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:
         top.others.extend(numbers + raised for numbers in one.others)
         top.made += [f"{name}.{label}" for label in one.made]
         top.bolts += [
-            replace(
-                bolt,
-                surface=bolt.surface and f"{name}.{bolt.surface}",
-                node=str(int(bolt.node) + shift) if bolt.node.isdigit() else f"{name}.{bolt.node}",
-            )
+            replace(bolt, surface=bolt.surface and f"{name}.{bolt.surface}", node=_within(name, bolt.node, shift))
             for bolt in one.bolts
         ]
         top.loads += one.loads
@@ -105,10 +106,8 @@ def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:
             for label, items in mine.items():
                 sets[f"{name}.{label}"] = [(name, what) for _, what in items]
         for label, some in one.surfaces.items():
-            top.surfaces[f"{name}.{label}"] = [
-                (str(int(what) + raised) if what.isdigit() else f"{name}.{what}", side) for what, side in some
-            ]
-        top.references += [str(int(r) + shift) if r.isdigit() else f"{name}.{r}" for r in one.references]
+            top.surfaces[f"{name}.{label}"] = [(_within(name, what, raised), side) for what, side in some]
+        top.references += [_within(name, what, shift) for what in one.references]
         top.turned += [f"{name}.{label}" for label in one.turned]
         top.notes += one.notes
         top.element_sets[name] = [("", _element_numbers(one) + raised)]
@@ -129,7 +128,7 @@ def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:
 def _element_numbers(scope: Scope, *, everything: bool = False) -> Index:
     """Numbers of the solids, or of all elements."""
     solids = [numbers for rows in scope.elements.values() for numbers, _ in rows]
-    return np.concatenate([index([]), *solids, *(scope.others if everything else [])])
+    return joined([*solids, *(scope.others if everything else [])])
 
 
 def _as_node_sets(scope: Scope) -> None:
@@ -139,6 +138,11 @@ def _as_node_sets(scope: Scope) -> None:
         if all(isinstance(what, str) and what.upper() == name.upper() for _, what in items):
             continue  # the set of this name
         scope.node_sets[f"{name}_SURFACE" if name.upper() in taken else name] = items
+
+
+def _within(instance: str, what: str, shift: int) -> str:
+    """A number or the name of a set of an instance, in the numbers and names of the whole."""
+    return str(int(what) + shift) if what.isdigit() else f"{instance}.{what}"
 
 
 def _numbered(what: str, shifts: Mapping[str, int]) -> int | None:
@@ -166,7 +170,7 @@ def _resolved(
     def numbers(name: str, seen: tuple[str, ...]) -> Index:
         if name in done:
             return done[name]
-        found = [index([])]
+        found: list[Index] = []
         for given, what in upper[name]:
             instance = as_written.get(given.upper())
             if instance is None:
@@ -194,7 +198,7 @@ def _resolved(
                 found.append(what + shifts[instance])
                 absent = np.setdiff1d(found[-1], everything) - shifts[instance]
                 notes.extend(not_in_file(f"the set {written[name]!r}", "numbers", absent.tolist()))
-        done[name] = np.unique(np.concatenate(found))
+        done[name] = np.unique(joined(found))
         return done[name]
 
     return {name: numbers(name.upper(), ()) for name in sets}
@@ -202,7 +206,7 @@ def _resolved(
 
 def _surfaces(path: Path, top: Scope, upper: dict[str, Index], raised: Mapping[str, int]) -> dict[str, Index]:
     """Rows of (element, side) of every surface on solids; those of shells and beams are left out with a note."""
-    others = np.concatenate([index([]), *top.others])
+    others = joined(top.others)
     bolts = {bolt.surface.upper() for bolt in top.bolts}
     side_sets: dict[str, Index] = {}
     for name, rows in top.surfaces.items():
@@ -237,11 +241,10 @@ def _raw(
     upper = {name.upper(): numbers for name, numbers in element_sets.items()}
     nodes = {name.upper(): numbers for name, numbers in node_sets.items()}
     side_sets = _surfaces(path, top, upper, raised)
-    references = [index([r]) if r.isdigit() else nodes.get(r.upper(), index([])) for r in top.references]
     helpers = {what.upper() for rows in top.surfaces.values() for what, _ in rows} - {n.upper() for n in top.made}
-    unknown = ", ".join(f"*{word}" for word in dict.fromkeys(top.unknown))
     notes = [*top.notes, *left_out(top.left_out)]
-    notes += [f"{unknown}: not known, and passed over"] if unknown else []
+    if top.unknown:
+        notes.append(f"{', '.join(f'*{word}' for word in dict.fromkeys(top.unknown))}: not known, and passed over")
     return RawMesh(
         numbers=index(top.nodes),
         points=np.array(list(top.nodes.values())),
@@ -254,9 +257,9 @@ def _raw(
         node_sets=node_sets,
         side_sets=side_sets,
         face_elements={name: tuple(rows) for name, rows in top.sheets.items()},
-        extra=np.concatenate([index([]), *top.extra]),
-        turned=np.concatenate([index([]), *(nodes.get(name.upper(), index([])) for name in top.turned)]),
-        references=np.unique(np.concatenate([index([]), *references])),
+        extra=joined(top.extra),
+        turned=joined(nodes.get(name.upper(), index([])) for name in top.turned),
+        references=np.unique(joined(_named(what, nodes) for what in top.references)),
         notes=tuple(notes),
         pretensions=_pretensions(top, (nodes, upper), raised),
     )
@@ -272,18 +275,18 @@ def _pretensions(
     for bolt in top.bolts:
         section: list[Index] = []
         for what, side in surfaces.get(bolt.surface.upper(), []):
-            one = int(what) if what.isdigit() else _numbered(what, raised)
-            chosen = index([one]) if one is not None else elements.get(what.upper(), index([]))
+            one = _numbered(what, raised)
+            chosen = index([one]) if one is not None else _named(what, elements)
             for numbers, corners in (row for rows in top.elements.values() for row in rows):
                 sides = SOLIDS[corners.shape[1]].sides
                 if re.fullmatch(r"S[1-6]", side) and int(side[1:]) <= len(sides):
                     section.append(corners[np.isin(numbers, chosen)][:, sides[int(side[1:]) - 1]].ravel())
-        pulled = index([bolt.node]) if bolt.node.isdigit() else nodes.get(bolt.node.upper(), index([]))
-        forces = [force for what, force in top.loads if _means(what, pulled, nodes)]
+        pulled = _named(bolt.node, nodes)
+        forces = [force for what, force in top.loads if len(pulled) and np.array_equal(_named(what, nodes), pulled)]
         found.append(
             Pretension(
                 text=bolt.text,
-                nodes=np.unique(np.concatenate([index([]), *section])),
+                nodes=np.unique(joined(section)),
                 axis=bolt.axis,
                 force=forces[-1] if forces else None,
             )
@@ -291,10 +294,9 @@ def _pretensions(
     return tuple(found)
 
 
-def _means(what: str, nodes: Index, sets: Mapping[str, Index]) -> bool:
-    """Whether a node or a set of a load is the node of a section."""
-    named = index([what]) if what.isdigit() else sets.get(what.upper(), index([]))
-    return bool(len(nodes)) and np.array_equal(named, nodes)
+def _named(what: str, sets: Mapping[str, Index]) -> Index:
+    """The number that a word is, or those of the set that it names; none where there is no such set."""
+    return index([what]) if what.isdigit() else sets.get(what.upper(), index([]))
 
 
 def decks(deck: JointDeck) -> dict[str, str]:
@@ -355,49 +357,43 @@ def connector(deck: JointDeck) -> str:
 
 def matrix(deck: JointDeck) -> str:
     """Write the joint as sparse matrices: stiffness, and structural damping or, after the JK paper, viscous."""
-    paper = deck.paper and deck.dampers is not None
-    lines = deck.header(
-        "**",
-        deck.damping_note()
-        if paper
-        else "loss as a structural damping matrix, the imaginary "
-        "part of the stiffness; frequency-domain steps with SIM only",
-    )
-    lines += _entries("KJ", deck, deck.stiffness)
-    assemble = "*MATRIX ASSEMBLE,STIFFNESS=KJ"
-    if paper and deck.dampers is not None:
-        lines += _entries("CJ", deck, deck.dampers)
-        assemble += ",VISCOUS DAMPING=CJ"
+    blocks = [("STIFFNESS", "KJ", deck.stiffness)]
+    note = STRUCTURAL
+    if deck.paper and deck.dampers is not None:
+        blocks.append(("VISCOUS DAMPING", "CJ", deck.dampers))
+        note = deck.damping_note()
     elif np.any(deck.loss):
-        lines += _entries("SJ", deck, deck.loss)
-        assemble += ",STRUCTURAL DAMPING=SJ"
-    return "\n".join([*lines, assemble]) + "\n"
+        blocks.append(("STRUCTURAL DAMPING", "SJ", deck.loss))
+    lines = _assembled(deck.entries, [(kind, name, deck.pairs.matrix(values)) for kind, name, values in blocks])
+    return "\n".join([*deck.header("**", note), *lines]) + "\n"
 
 
-def _entries(name: str, deck: JointDeck, blocks: Array) -> list[str]:
+def _assembled(entries: Index, matrices: list[tuple[str, str, Any]]) -> list[str]:
+    """Matrices as (kind, name, values), and the line that adds them to the model; entries: node and direction."""
     from scipy.sparse import triu
 
-    upper = triu(deck.pairs.matrix(blocks)).tocoo()
-    n = deck.mesh.numbers
-    return [f"*MATRIX INPUT,NAME={name},TYPE=SYMMETRIC"] + [
-        f"{n[i // 3]},{i % 3 + 1},{n[j // 3]},{j % 3 + 1},{real(v, 23)}"
-        for i, j, v in zip(upper.row, upper.col, upper.data, strict=True)
-        if v
-    ]
+    lines = []
+    for _, name, values in matrices:
+        upper = triu(values).tocoo()
+        lines.append(f"*MATRIX INPUT,NAME={name},TYPE=SYMMETRIC")
+        lines += [
+            f"{entries[i, 0]},{entries[i, 1]},{entries[j, 0]},{entries[j, 1]},{real(float(value), 23)}"
+            for i, j, value in zip(upper.row, upper.col, upper.data, strict=True)
+            if value
+        ]
+    return [*lines, "*MATRIX ASSEMBLE," + ",".join(f"{kind}={name}" for kind, name, _ in matrices)]
 
 
 def contact(deck: JointDeck) -> str:
     """Write a surface interaction with the law as pressure-overclosure table, and the contact pair."""
-    rows, law = table(deck)
+    rows, law = interaction(deck)
     slip = law.friction * law.mean_pressure / law.k_t * deck.system.metre
     lines = deck.header(
         "**",
         "contact in place of springs: needs a step with the bolts before *FREQUENCY",
-        f"elastic slip: sticks with k_t at the mean pressure; friction {law.friction:g}"
-        + ("" if law.given else ", not given by the study: check it"),
+        f"elastic slip: sticks with k_t at the mean pressure; {law.friction_note}",
     )
-    lines += ["*SURFACE INTERACTION,NAME=JK", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR", *rows]
-    lines += [f"*FRICTION,ELASTIC SLIP={real(slip, 20)}", f"{real(law.friction, 20)},"]
+    lines += [*rows, f"*FRICTION,ELASTIC SLIP={real(slip, 20)}", f"{real(law.friction, 20)},"]
     if deck.frequency is not None and law.loss_n:
         c = law.loss_n * law.k_n / (2 * np.pi * deck.frequency) * deck.system.density
         lines += ["*CONTACT DAMPING,DEFINITION=DAMPING COEFFICIENT", f"{real(c, 20)},"]
@@ -407,25 +403,9 @@ def contact(deck: JointDeck) -> str:
 
 def condensed(deck: CondensedDeck) -> dict[str, str]:
     """Two nodes and the joint between them as a matrix, to include in an input deck before its first step, by name."""
-    note = (
-        "loss as a structural damping matrix, the imaginary part of the stiffness; frequency-domain steps with SIM only"
-    )
-    lines = [*comments("**", *deck.facts, *([note] if np.any(deck.loss) else [])), "*NODE"]
-    for node, at in zip(deck.nodes, deck.places, strict=True):
-        lines.append(f"{node}," + ",".join(real(float(x), 20) for x in at))
-    lines += _upper("KJ", deck, deck.stiffness)
-    assemble = "*MATRIX ASSEMBLE,STIFFNESS=KJ"
+    matrices = [("STIFFNESS", "KJ", deck.in_units(deck.stiffness))]
     if np.any(deck.loss):
-        lines += _upper("SJ", deck, deck.loss)
-        assemble += ",STRUCTURAL DAMPING=SJ"
-    return {"condensed_matrix.inp": "\n".join([*lines, assemble]) + "\n"}
-
-
-def _upper(name: str, deck: CondensedDeck, matrix: Array) -> list[str]:
-    values, rows = deck.in_units(matrix), deck.entries
-    return [f"*MATRIX INPUT,NAME={name},TYPE=SYMMETRIC"] + [
-        f"{rows[i][0]},{rows[i][1]},{rows[j][0]},{rows[j][1]},{real(float(values[i, j]), 23)}"
-        for i in range(12)
-        for j in range(i, 12)
-        if values[i, j]
-    ]
+        matrices.append(("STRUCTURAL DAMPING", "SJ", deck.in_units(deck.loss)))
+    lines = [*comments("**", *deck.facts, *([STRUCTURAL] if np.any(deck.loss) else [])), "*NODE"]
+    lines += [f"{node},{reals(at)}" for node, at in zip(deck.nodes, deck.places, strict=True)]
+    return {"condensed_matrix.inp": "\n".join([*lines, *_assembled(deck.entries, matrices)]) + "\n"}

@@ -7,7 +7,8 @@ one along the normal and one across it. Not run: read back in the tests by a rea
 
 import numpy as np
 
-from faying.decks.deck import JointDeck, grouped, real
+from faying.decks.deck import JointDeck, grouped, real, reals
+from faying.decks.raw import UPRIGHT_FIRST
 from faying.fe.mesh import Mesh, kind_of
 from faying.typing import Array, Index
 
@@ -19,8 +20,6 @@ CELLS = {
     "wedge6": "PENTA6",
     "wedge15": "PENTA15",
 }
-# Aster puts the middles of the upright edges before those of the top
-ORDER = {"hex20": [*range(12), *range(16, 20), *range(12, 16)], "wedge15": [*range(9), *range(12, 15), *range(9, 12)]}
 
 
 def decks(deck: JointDeck) -> dict[str, str]:
@@ -47,18 +46,14 @@ def mesh(deck: JointDeck, sets: int, group: Index, frames: int, frame: Index) ->
     model: Mesh = deck.mesh
     n = model.numbers
     lines = ["TITRE", *deck.header(""), "FINSF", "COOR_3D"]
-    lines += [
-        f"N{i} " + " ".join(real(float(x), 23) for x in p)
-        for i, p in zip(n, model.points * deck.system.metre, strict=True)
-    ]
+    lines += [f"N{i} " + reals(p, " ", 23) for i, p in zip(n, model.points * deck.system.metre, strict=True)]
     lines.append("FINSF")
     number, members = 0, {}
     for part, blocks in model.parts.items():
         start = number
         for cells in blocks:
-            kind = kind_of(cells)
-            lines.append(CELLS[kind])
-            for cell in cells[:, ORDER.get(kind, slice(None))]:
+            lines.append(CELLS[kind_of(cells)])
+            for cell in cells[:, UPRIGHT_FIRST.get(cells.shape[1], slice(None))]:
                 number += 1
                 lines += _wrapped([f"M{number}", *(f"N{n[i]}" for i in cell)])
             lines.append("FINSF")
@@ -98,16 +93,11 @@ def commands(deck: JointDeck, sets: Array, axes: Index) -> str:
         k, lost, c = (row[i : i + 3] for i in (1, 4, 7))
         factor = 0.0 if paper else float(lost.sum() / k.sum()) if k.sum() else 0.0
         hysteretic = f", AMOR_HYST={real(factor, 20)}" if factor else ""
-        lines.append(f"    _F(GROUP_MA='JK{s}', REPERE='LOCAL', CARA='K_T_D_L', VALE=({_three(k)}){hysteretic}),")
+        lines.append(f"    _F(GROUP_MA='JK{s}', REPERE='LOCAL', CARA='K_T_D_L', VALE=({reals(k, ', ')}){hysteretic}),")
         if c.any():
-            lines.append(f"    _F(GROUP_MA='JK{s}', REPERE='LOCAL', CARA='A_T_D_L', VALE=({_three(c)})),")
+            lines.append(f"    _F(GROUP_MA='JK{s}', REPERE='LOCAL', CARA='A_T_D_L', VALE=({reals(c, ', ')})),")
     lines.append("    _F(GROUP_MA='JOINT', REPERE='GLOBAL', CARA='M_T_D_L', VALE=0.0)),")
     lines.append("  ORIENTATION=(")
     for s, leader in enumerate(axes, 1):
-        n, t1, _ = deck.axes[leader]
-        lines.append(f"    _F(GROUP_MA='JX{s}', CARA='VECT_X_Y', VALE=({_three(n)}, {_three(t1)})),")
+        lines.append(f"    _F(GROUP_MA='JX{s}', CARA='VECT_X_Y', VALE=({reals(deck.axes[leader, :2].ravel(), ', ')})),")
     return "\n".join([*lines, "  ))"]) + "\n"
-
-
-def _three(values: Array) -> str:
-    return ", ".join(real(float(v), 20) for v in values)

@@ -7,79 +7,44 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.raw import read_text
+from faying.decks.raw import UPRIGHT_FIRST, check_included, read_text
 from faying.decks.vocabulary import nastran_kind
 from faying.errors import ReadError
 from faying.fe.elements import SOLIDS
 from faying.typing import Array
 
-# Nastran puts the nodes of the upright edges before those of the top
-ORDER = {
-    20: [*range(12), *range(16, 20), *range(12, 16)],
-    15: [*range(9), *range(12, 15), *range(9, 12)],
-}
 COUNTS = {"CTETRA": (4, 10), "CHEXA": (8, 20), "CPENTA": (6, 15)}
 _SKINS = {"CTRIA3": (3, 3), "CTRIAR": (3, 3), "CTRIA6": (3, 6), "CQUAD4": (4, 4), "CQUADR": (4, 4), "CQUAD8": (4, 8)}
-# what is left out, by the places of the grids it names
+# what is left out, and the places of the grids that it names
 _LEFT_OUT: dict[str, Sequence[int]] = {
-    "CBAR": (2, 3, 4),  # the third orients it, where it is a grid and no real number
-    "CBEAM": (2, 3, 4),
+    # the third grid of a beam orients it, where it is a grid and no real number
+    **dict.fromkeys(("CBAR", "CBEAM", "CBEND", "CGAP", "CBUSH"), (2, 3, 4)),
     "CBEAM3": (2, 3, 4, 5),
-    "CBEND": (2, 3, 4),
-    "CROD": (2, 3),
-    "CTUBE": (2, 3),
-    "CVISC": (2, 3),
-    "CGAP": (2, 3, 4),
-    "CBUSH1D": (2, 3),
-    "CBUSH2D": (2, 3),
-    "CFAST": (),
-    "CWELD": (),
-    "CSEAM": (),
-    "CONROD": (1, 2),
-    "PLOTEL": (1, 2),
-    "CONM1": (1,),
-    "CONM2": (1,),
-    "CELAS1": (2, 4),
-    "CELAS2": (2, 4),
-    "CBUSH": (2, 3, 4),
-    "CDAMP1": (2, 4),
-    "CDAMP2": (2, 4),
-    "CMASS1": (2, 4),
-    "CMASS2": (2, 4),
-    "CELAS3": (2, 3),
-    "CELAS4": (2, 3),
-    "CDAMP3": (2, 3),
-    "CDAMP4": (2, 3),
-    "CMASS3": (2, 3),
-    "CMASS4": (2, 3),
+    **dict.fromkeys(("CROD", "CTUBE", "CVISC", "CBUSH1D", "CBUSH2D"), (2, 3)),
+    **dict.fromkeys(("CONROD", "PLOTEL"), (1, 2)),
+    **dict.fromkeys(("CFAST", "CWELD", "CSEAM", "CGEN"), ()),
+    **dict.fromkeys(("CONM1", "CONM2"), (1,)),
+    **dict.fromkeys(("CELAS1", "CELAS2", "CDAMP1", "CDAMP2", "CMASS1", "CMASS2"), (2, 4)),
+    **dict.fromkeys(("CELAS3", "CELAS4", "CDAMP3", "CDAMP4", "CDAMP5", "CMASS3", "CMASS4"), (2, 3)),
     "RBE1": (1, 3, 5),
-    "RBAR1": (1, 2),
-    "RSPLINE": (2,),
+    **dict.fromkeys(("RBAR", "RBAR1", "RROD"), (1, 2)),
     "RBE2": (1,),
-    "RBE3": (2,),
-    "RBAR": (1, 2),
-    "RROD": (1, 2),
+    **dict.fromkeys(("RBE3", "RSPLINE"), (2,)),
     # plates in shear, of large strain, of revolution; sides for heat; acoustic absorbers and barriers
     "CSHEAR": range(2, 6),
-    "CQUAD": range(2, 11),
-    "CQUADX": range(2, 11),
-    "CTRIAX": range(2, 8),
-    "CTRIAX6": range(2, 8),
+    **dict.fromkeys(("CQUAD", "CQUADX"), range(2, 11)),
+    **dict.fromkeys(("CTRIAX", "CTRIAX6"), range(2, 8)),
     "CHBDYE": (),
     "CHBDYG": range(8, 16),
     "CHBDYP": (5, 6, 7),
     "CAABSF": range(2, 6),
-    "CHACAB": range(2, 22),
-    "CHACBR": range(2, 22),
-    "CDAMP5": (2, 3),
-    "CGEN": (),
+    **dict.fromkeys(("CHACAB", "CHACBR"), range(2, 22)),
 }
 # cards that begin with C and are not elements: loads, output, aerodynamics, symmetry, laws
 _NO_ELEMENTS = (
     *("CSET", "CEND", "CONV", "CLOAD", "CBARAO", "CAERO", "CMFREE", "CONTRLT", "CREEP", "CSCHD", "CSSCHD", "CSUP"),
     *("CYAX", "CYSUP", "CYSYM", "CAMPBLL", "COMPUDS", "CINTC"),
 )
-_MOST_FILES = 500
 
 Card = tuple[str, list[str], str]
 
@@ -87,11 +52,7 @@ Card = tuple[str, list[str], str]
 def cards(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = None) -> Iterator[Card]:
     """Every card as (name, fields, where), its continuations joined; those of included files too; ENDDATA last."""
     count = [0] if count is None else count
-    count[0] += 1
-    if path.resolve() in seen:
-        raise ReadError(f"{path} includes itself")
-    if len(seen) > 20 or count[0] > _MOST_FILES:
-        raise ReadError(f"{path}: more than {_MOST_FILES} files are included, or 20 deep; write them into one")
+    check_included(path, seen, count)
     lines = read_text(path, "bulk data").splitlines()
     bulk = not any(re.match(r"\s*BEGIN\s+BULK", line, re.I) for line in lines)
     name, fields, where = "", [""], ""
@@ -114,10 +75,10 @@ def cards(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = Non
             yield name, fields, where
             name = ""
         if ended:
-            yield "ENDDATA", [], f"{path.name}, line {number}"
+            yield "ENDDATA", [""], f"{path.name}, line {number}"
             return
         if found:
-            yield from (c for c in cards(path.parent / found.group(1).strip(), (*seen, path.resolve()), count))
+            yield from cards(path.parent / found.group(1).strip(), (*seen, path.resolve()), count)
             continue
         name, fields, where = first.rstrip("*").upper(), rest, f"{path.name}, line {number}"
     if name:
@@ -219,7 +180,7 @@ class Bulk:
             raise ReadError(f"{where}: {name} {fields[0]} has more than {many} nodes; is a line there twice?")
         if len(given) not in (few, many):
             raise ReadError(f"{where}: {name} {fields[0]} has {len(given)} nodes; {few} or {many} are known")
-        ordered = [given[i] for i in ORDER.get(len(given), range(len(given)))]
+        ordered = [given[i] for i in UPRIGHT_FIRST.get(len(given), range(len(given)))]
         kind = SOLIDS[len(given)].name
         self.solids.setdefault(kind, []).append((int(fields[0]), ordered))
         self.solid[int(fields[0])] = (kind, ordered)

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from faying.decks.deck import JointDeck, real
-from faying.decks.keywords import elements, orientations, table
+from faying.decks.deck import JointDeck, reals
+from faying.decks.keywords import elements, interaction, orientations
 from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_dofs, read_text, whole
 from faying.errors import ReadError
 from faying.typing import Index
@@ -73,17 +73,15 @@ def spring2(deck: JointDeck) -> str:
 
 def contact(deck: JointDeck) -> str:
     """Write a surface interaction and the contact pair, to take the place of the springs in a model with bolts."""
-    rows, law = table(deck)
+    rows, law = interaction(deck)
     slope = law.k_t * deck.system.density
     lines = deck.header(
         "**",
         "contact in place of springs: needs a *STATIC step with the bolts, then *STEP,PERTURBATION with *FREQUENCY",
         "NODE TO SURFACE only: SURFACE TO SURFACE loses a TABULAR law. Slave is the surface named first",
-        f"stick slope k_t at the mean pressure, {law.mean_pressure * deck.system.pressure:.6g}; friction "
-        f"{law.friction:g}" + ("" if law.given else ", not given by the study: check it"),
+        f"stick slope k_t at the mean pressure, {law.mean_pressure * deck.system.pressure:.6g}; {law.friction_note}",
         "no damping: *CONTACT DAMPING acts in *DYNAMIC only",
     )
-    lines += ["*SURFACE INTERACTION,NAME=JK", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR", *rows]
-    lines += ["*FRICTION", f"{real(law.friction, 20)},{real(slope, 20)}"]
+    lines += [*rows, "*FRICTION", reals([law.friction, slope])]
     lines += ["*CONTACT PAIR,INTERACTION=JK,TYPE=NODE TO SURFACE", ",".join(deck.faces)]
     return "\n".join(lines) + "\n"

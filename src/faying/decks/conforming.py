@@ -1,10 +1,11 @@
 """Parts of a file that share nodes: one body where no face is named between them, and apart where faces are."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from faying.decks.raw import joined
 from faying.errors import InputError
 from faying.fe.mesh import bodies_of
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
@@ -59,27 +60,26 @@ def bodies(
     names = list(blocks)
     pairs: list[tuple[str, str]] = []
     counts: list[int] = []
-    if not _any_shared(blocks, nodes):
+    own = {part: nodes_of(some) for part, some in blocks.items()}
+    every = np.concatenate(list(own.values()))
+    if len(np.unique(every)) == len(every):
         return Bodies((), {part: k for k, part in enumerate(names)}, ())
     outer = {part: skin(some, nodes) for part, some in blocks.items()}
-    skins = {part: _keys(some, nodes) for part, some in outer.items()}
+    skins = {part: keys_of(some, nodes) for part, some in outer.items()}
     sides: dict[str, tuple[str, Blocks]] = {}
-    own = {part: nodes_of(some) for part, some in blocks.items()}
     named: dict[str, list[Index]] = {part: [] for part in names}
     for face, some in faces.items():
-        key = _keys(some, nodes)
+        key = keys_of(some, nodes)
         if len(key) < len(skins[face_part[face]]):
             named[face_part[face]].append(key)
-    marked = {part: np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *some])) for part, some in named.items()}
     for k, a in enumerate(names):
         for b in names[k + 1 :]:
             met = np.intersect1d(skins[a], skins[b])
-            if len(met) and not np.isin(met, np.concatenate([marked[a], marked[b]])).any():
+            if len(met) and not np.isin(met, joined([*named[a], *named[b]])).any():
                 pairs.append((a, b))
                 counts.append(len(np.intersect1d(own[a], own[b])))
                 for one, two in ((a, b), (b, a)):
-                    on = tuple(some[np.isin(side_key(some, nodes), met)] for some in outer[one])
-                    sides[f"{one}.{two}"] = one, tuple(some for some in on if len(some))
+                    sides[f"{one}.{two}"] = one, among(outer[one], met, nodes)
     place = {part: k for k, body in enumerate(bodies_of(names, pairs)) for part in body}
     return Bodies(tuple(pairs), place, tuple(counts), {name: one for name, one in sides.items() if name not in faces})
 
@@ -107,7 +107,7 @@ def check_apart(
     if not len(shared):
         return
     on = [found.place[face_part[label]] * n + nodes_of(some) for label, some in faces.items()]
-    loose = key[np.isin(key % n, shared) & ~np.isin(key, np.concatenate(on) if on else [])]
+    loose = key[np.isin(key % n, shared) & ~np.isin(key, joined(on))]
     if len(loose):
         part = next(part for part in blocks if found.place[part] == loose[0] // n)
         other = next(p for p in blocks if p != part and loose[0] % n in nodes_of(blocks[p]))
@@ -118,10 +118,12 @@ def check_apart(
         )
 
 
-def _any_shared(blocks: Mapping[str, Blocks], nodes: int) -> bool:
-    every = np.concatenate([nodes_of(some) for some in blocks.values()])
-    return len(np.unique(every)) < len(every)
+def keys_of(faces: Iterable[Index], nodes: int) -> Index:
+    """Keys of faces of several kinds, one for each face; nodes: how many there are."""
+    return joined(side_key(some, nodes) for some in faces)
 
 
-def _keys(faces: Blocks, nodes: int) -> Index:
-    return np.concatenate([np.zeros(0, dtype=np.int64), *(side_key(some, nodes) for some in faces)])
+def among(faces: Blocks, keys: Index, nodes: int, *, others: bool = False) -> Blocks:
+    """The faces that have one of some keys; others: those that have none."""
+    chosen = [some[np.isin(side_key(some, nodes), keys, invert=others)] for some in faces]
+    return tuple(some for some in chosen if len(some))

@@ -1,5 +1,6 @@
 """What every exporter gets: the pairs of one joint, the node numbers of the model, and what its header says."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,11 @@ class ContactProperty:
     friction: float
     given: bool
 
+    @property
+    def friction_note(self) -> str:
+        """The coefficient of friction in words, with a warning where the study does not say it."""
+        return f"friction {self.friction:g}" + ("" if self.given else ", not given by the study: check it")
+
 
 @dataclass(frozen=True, kw_only=True)
 class JointDeck:
@@ -57,6 +63,12 @@ class JointDeck:
     def ends(self) -> tuple[Index, Index]:
         """Node numbers of both ends of each pair."""
         return self.mesh.numbers[self.pairs.first], self.mesh.numbers[self.pairs.second]
+
+    @property
+    def entries(self) -> Index:
+        """Node and direction, from 1, of each row of the model's matrix (n, 2)."""
+        numbers = self.mesh.numbers
+        return np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])
 
     @property
     def axes(self) -> Array:
@@ -152,9 +164,9 @@ class CondensedDeck:
         return np.asarray(self.points * self.system.metre)
 
     @property
-    def entries(self) -> list[tuple[int, int]]:
-        """Node and direction, from 1, of each row."""
-        return [(node, direction) for node in self.nodes for direction in range(1, 7)]
+    def entries(self) -> Index:
+        """Node and direction, from 1, of each row (12, 2)."""
+        return np.column_stack([np.repeat(self.nodes, 6), np.tile(np.arange(1, 7), 2)])
 
 
 def _clean(blocks: Array) -> Array:
@@ -193,3 +205,8 @@ def real(value: float, width: int) -> str:
     digits = min(16, width - 6 - (value < 0))
     text = f"{value:.{digits}E}"
     return text if len(text) <= width else f"{value:.{digits - 1}E}"
+
+
+def reals(values: Iterable[float], mark: str = ",", width: int = 20) -> str:
+    """Write numbers as `real` does, with a mark between them."""
+    return mark.join(real(float(value), width) for value in values)

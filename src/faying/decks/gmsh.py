@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.raw import RawMesh, face_blocks, from_edges, gathered, index
+from faying.decks.raw import RawMesh, face_blocks, from_edges, gathered, index, understood
 from faying.errors import ReadError
 from faying.typing import Array, Index
 
@@ -102,13 +102,12 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
     if len(words) != 3 or words[0] not in (b"2.2", b"4.1") or words[1] not in (b"0", b"1") or not words[2].isdigit():
         kind = head.decode("utf-8", errors="replace")[:40]
         raise ReadError(f"{path} has format {kind!r}; save it in 4.1 or 2.2 (Mesh.MshFileVersion)")
-    order = "<"
-    if words[1] == b"1":
-        if words[2] != b"8" or rest[:4] not in (b"\1\0\0\0", b"\0\0\0\1"):
-            raise ReadError(f"{path} is a binary file of unknown byte order; is the file complete?")
-        order = "<" if rest[:1] == b"\1" else ">"
-    if words[1] == b"0":
+    in_bytes = words[1] == b"1"
+    if not in_bytes:
         _check_sections(data, path)
+    elif words[2] != b"8" or rest[:4] not in (b"\1\0\0\0", b"\0\0\0\1"):
+        raise ReadError(f"{path} is a binary file of unknown byte order; is the file complete?")
+    order = ">" if rest[:1] == b"\0" else "<"
     out: dict[str, _Words | _Bytes] = {}
     for name in ("PhysicalNames", "Entities", "Nodes", "Elements"):
         begin, end = b"$" + name.encode() + b"\n", b"$End" + name.encode()
@@ -121,7 +120,7 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
         if stop < 0:
             raise ReadError(f"{path}: ${name} has no $End{name}; the file is cut short")
         piece = data[start + len(begin) : stop]
-        binary = words[1] == b"1" and name != "PhysicalNames"
+        binary = in_bytes and name != "PhysicalNames"
         out[name] = _Bytes(piece, name, order) if binary else _Words(piece, name)
     return words[0].decode(), out
 
@@ -174,7 +173,7 @@ def read(path: Path) -> RawMesh:
     version, sections = _sections(path)
     names = _names(sections.get("PhysicalNames"))
     nodes, elements = sections["Nodes"], sections["Elements"]
-    try:
+    with understood(f"{path} has something that is not a number"):
         if version == "2.2":
             numbers, points = _nodes_22(nodes)
             rows = _once(_elements_22(elements))
@@ -182,10 +181,6 @@ def read(path: Path) -> RawMesh:
             groups = _entities(sections.get("Entities"))
             numbers, points = _nodes_41(nodes)
             rows = _elements_41(elements, groups)
-    except ReadError:
-        raise
-    except (ValueError, OverflowError) as fault:
-        raise ReadError(f"{path} has something that is not a number ({fault}); is the file complete?") from None
     solids: dict[str, list[tuple[int, list[int]]]] = {}
     bodies: dict[str, list[int]] = {}
     faces: dict[str, list[list[int]]] = {}
@@ -341,11 +336,9 @@ def _elements_22(words: _Words | _Bytes) -> Rows:
     return out
 
 
-def _elements_41(
-    words: _Words | _Bytes, groups: dict[tuple[int, int], list[int]]
-) -> list[tuple[int, int, list[int], list[int]]]:
+def _elements_41(words: _Words | _Bytes, groups: dict[tuple[int, int], list[int]]) -> Rows:
     blocks, _, _, _ = words.sizes(4)
-    out = []
+    out: Rows = []
     for _ in range(blocks):
         dimension, entity, code = words.ints(3)
         (count,) = words.sizes(1)

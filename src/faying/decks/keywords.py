@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import ContactProperty, JointDeck, grouped, real
-from faying.decks.raw import read_text
+from faying.decks.deck import ContactProperty, JointDeck, grouped, real, reals
+from faying.decks.raw import check_included, read_text
 from faying.errors import InputError, ReadError
 from faying.typing import Array, Index
 
-DEEPEST, MOST_FILES = 20, 500  # of included files
 DATA = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}
 
 
@@ -37,11 +36,7 @@ class Block:
 def blocks(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = None) -> Iterator[Block]:
     """Keyword blocks of a file and of the files it includes."""
     count = [0] if count is None else count
-    count[0] += 1
-    if path.resolve() in seen:
-        raise ReadError(f"{path} includes itself")
-    if len(seen) > DEEPEST or count[0] > MOST_FILES:
-        raise ReadError(f"{path}: more than {MOST_FILES} files are included, or {DEEPEST} deep; write them into one")
+    check_included(path, seen, count)
     current: Block | None = None
     lines = iter(enumerate(read_text(path, "input file").splitlines(), 1))
     for number, given in lines:
@@ -93,8 +88,7 @@ def orientations(deck: JointDeck) -> tuple[list[str], Index]:
     first, group = grouped(deck.axes)
     lines = []
     for g, leader in enumerate(first):
-        numbers = ",".join(real(v, 20) for v in deck.axes[leader, :2].ravel())
-        lines += [f"*ORIENTATION,NAME=JKA{g},SYSTEM=RECTANGULAR", numbers]
+        lines += [f"*ORIENTATION,NAME=JKA{g},SYSTEM=RECTANGULAR", reals(deck.axes[leader, :2].ravel())]
     return lines, group
 
 
@@ -128,11 +122,11 @@ def elements(
     return lines, number
 
 
-def table(deck: JointDeck) -> tuple[list[str], ContactProperty]:
-    """Lines of pressure and overclosure in the deck's units, and the contact they came from."""
+def interaction(deck: JointDeck) -> tuple[list[str], ContactProperty]:
+    """Lines of a surface interaction JK with pressure over overclosure in the deck's units, and the contact it is."""
     contact = deck.contact
     if contact is None:
         raise InputError("the law gives no curve of pressure against approach; export springs")
-    pressure, approach = contact.pressure * deck.system.pressure, contact.approach * deck.system.metre
-    rows = [f"{real(p, 20)},{real(w, 20)}" for p, w in zip(pressure, approach, strict=True)]
-    return ["0.,0.", *rows], contact
+    rows = np.column_stack([contact.pressure * deck.system.pressure, contact.approach * deck.system.metre])
+    lines = ["*SURFACE INTERACTION,NAME=JK", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR", "0.,0."]
+    return [*lines, *map(reals, rows)], contact

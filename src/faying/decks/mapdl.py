@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real
-from faying.decks.raw import Pretension, RawMesh, gathered, index, not_in_file, ranged, undoubled
+from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real, reals
+from faying.decks.raw import Pretension, RawMesh, gathered, index, joined, not_in_file, ranged, undoubled
 from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, left_out
 from faying.errors import ReadError
 from faying.typing import Array, Index
@@ -28,77 +28,95 @@ _CONSTRAINTS = ("CE", "CP", "CERIG", "RBE3", "CEINTF", "CPINTF", "PSMESH", "SLOA
 
 def read(path: Path) -> RawMesh:
     """Read an archive. Raises ReadError for unblocked archives, other elements, and files cut short."""
-    lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
-    kinds: dict[int, str] = {}
-    numbers: list[int] = []
-    points: list[list[float]] = []
-    rows: dict[str, list[tuple[int, list[int]]]] = {}
-    sets: dict[str, dict[str, np.ndarray]] = {"NODE": {}, "ELEM": {}}
-    extra: list[int] = []
-    turned: list[int] = []
-    dropped: dict[int, str] = {}  # numbers and types of elements that are not solids
-    commands: list[str] = []
-    bolts, others = _Bolts(), _Others(path)
+    archive = _Archive(path, path.read_text(encoding="utf-8-sig", errors="replace").splitlines())
     k = 0
     try:
-        while k < len(lines):
-            words = [word.strip() for word in lines[k].split(",")]
-            name = words[0].upper()
-            if name in ("ET", "ETBLOCK"):
-                k = _types(lines, k, words, kinds)
-            elif name == "NBLOCK":
-                k = _nodes(lines, k, words, numbers, points, turned)
-            elif name == "EBLOCK":
-                k = _elements(lines, k, words, kinds, rows, extra, dropped, bolts)
-            elif name == "CMBLOCK":
-                k, sets[words[2].upper()[:4]][words[1]] = _component(lines, k, words)
-            else:
-                bolts.take(name, words)
-                if name in _CONSTRAINTS:
-                    commands.append(name)
-                k = others.passed(lines, k)
+        while k < len(archive.lines):
+            k = archive.take(k)
     except ReadError:
         raise
     except (ValueError, IndexError, KeyError) as fault:
         why = "a block or a line ends too early" if isinstance(fault, IndexError) else fault
         raise ReadError(
-            f"{path.name}, line {min(k, len(lines)) + 1}: cannot be read ({why}); is the archive complete and "
+            f"{path.name}, line {min(k, len(archive.lines)) + 1}: cannot be read ({why}); is the archive complete and "
             "in blocked format (CDWRITE)?"
         ) from None
-    if not numbers or not rows:
-        raise ReadError(
-            f"{path} holds {len(numbers)} nodes in NBLOCK and {sum(map(len, rows.values()))} solids in EBLOCK; "
-            "write the archive with CDWRITE,DB in blocked format"
-        )
-    elements = {*dropped, *(number for some in rows.values() for number, _ in some)}
-    return RawMesh(
-        numbers=index(numbers),
-        points=np.array(points),
-        elements=gathered(rows),
-        element_sets=sets["ELEM"],
-        node_sets=sets["NODE"],
-        extra=index(extra),
-        turned=index(turned),
-        notes=(
-            *_left_out([kind for kind in dropped.values() if kind in _LEFT_OUT], commands),
-            *_lacking(lines, path, sets, elements, {*numbers}),
-        ),
-        pretensions=bolts.sections(),
-        counted=_says_counts(lines),
-    )
+    return archive.mesh()
 
 
 @dataclass
-class _Others:
-    """Lines that are not read: commands, and the numbers of other commands (RLBLOCK, LCURV, *PREAD, ...)."""
+class _Archive:
+    """What the lines of an archive hold."""
 
     path: Path
-    last: int = -1  # the last of them; a block that is read ends at any other line
+    lines: list[str]
+    kinds: dict[int, str] = field(default_factory=dict)
+    numbers: list[int] = field(default_factory=list)
+    points: list[list[float]] = field(default_factory=list)
+    rows: dict[str, list[tuple[int, list[int]]]] = field(default_factory=dict)
+    sets: dict[str, dict[str, Index]] = field(default_factory=lambda: {"NODE": {}, "ELEM": {}})
+    extra: list[int] = field(default_factory=list)
+    turned: list[int] = field(default_factory=list)
+    dropped: dict[int, str] = field(default_factory=dict)  # numbers and types of elements that are not solids
+    commands: list[str] = field(default_factory=list)
+    bolts: "_Bolts" = field(default_factory=lambda: _Bolts())
+    last: int = -1  # the last line that is not read; a block that is read ends at any other line
 
-    def passed(self, lines: list[str], k: int) -> int:
-        """The next line; ReadError where line k belongs to a block whose command or form is not there."""
-        line = lines[k].strip()
-        before = lines[k - 1].lstrip().upper()
+    def take(self, k: int) -> int:
+        """Note the command of line k with its block; the number of the line behind it."""
+        words = [word.strip() for word in self.lines[k].split(",")]
+        name = words[0].upper()
+        blocks = {"ETBLOCK": self._types, "NBLOCK": self._nodes, "EBLOCK": self._elements, "CMBLOCK": self._component}
+        if name in blocks:
+            return blocks[name](k, words)
+        if name == "ET":
+            if len(words) > 2:
+                self.kinds[int(words[1])] = re.sub(r"\D", "", words[2])
+            return k + 1
+        self.bolts.take(name, words)
+        if name in _CONSTRAINTS:
+            self.commands.append(name)
+        return self._passed(k)
+
+    def mesh(self) -> RawMesh:
+        """What was read, with notes on what was not."""
+        if not self.numbers or not self.rows:
+            raise ReadError(
+                f"{self.path} holds {len(self.numbers)} nodes in NBLOCK and {sum(map(len, self.rows.values()))} solids "
+                "in EBLOCK; write the archive with CDWRITE,DB in blocked format"
+            )
+        notes = _left_out([kind for kind in self.dropped.values() if kind in _LEFT_OUT], self.commands)
+        if not any(line.strip().upper() == "FINISH" for line in self.lines):
+            notes.append(f"{self.path.name} has no FINISH: it may be cut short")
+        elements = {*self.dropped, *(number for some in self.rows.values() for number, _ in some)}
+        for kind, what, there in (("ELEM", "elements", elements), ("NODE", "nodes", {*self.numbers})):
+            for name, numbers in self.sets[kind].items():
+                notes += not_in_file(f"the component {name!r}", what, numbers.tolist(), there)
+        return RawMesh(
+            numbers=index(self.numbers),
+            points=np.array(self.points),
+            elements=gathered(self.rows),
+            element_sets=self.sets["ELEM"],
+            node_sets=self.sets["NODE"],
+            extra=index(self.extra),
+            turned=index(self.turned),
+            notes=tuple(notes),
+            pretensions=self.bolts.sections(),
+            counted=self._says_counts(),
+        )
+
+    def _says_counts(self) -> bool:
+        """Whether every block of nodes and elements says how many it holds, which was then compared."""
+        heads = [line.split(",") for line in self.lines if line.upper().startswith(("NBLOCK", "EBLOCK"))]
+        return all(len(words) > 4 and words[4].strip().isdigit() and int(words[4]) > 0 for words in heads)
+
+    def _passed(self, k: int) -> int:
+        """Pass over a line that is a command, or numbers of another one (RLBLOCK, LCURV, *PREAD, ...).
+
+        Raises ReadError where line k belongs to a block whose command or form is not there.
+        """
+        line = self.lines[k].strip()
+        before = self.lines[k - 1].lstrip().upper()
         led = before.startswith("(") or "BLOCK" in before.partition(",")[0]  # RLBLOCK has two lines of forms
         if line.startswith("(") and not led:
             raise ReadError(
@@ -114,24 +132,97 @@ class _Others:
         self.last = k
         return k + 1
 
+    def _types(self, k: int, words: list[str]) -> int:
+        """Element types of an ETBLOCK: number and name of each, then key options."""
+        form = self.lines[k + 1]
+        width = _width(form)
+        wide = re.search(r",\s*\d*a(\d+)", form.lower())
+        start, k = k, k + 2
+        while int(self.lines[k][:width]) != -1:
+            line = self.lines[k]
+            name = line[width : 2 * width]
+            name = name if wide is None or name.strip().isdigit() else line.split()[1]
+            self.kinds[int(line[:width])] = re.sub(r"\D", "", name)
+            k += 1
+        if words[1].isdigit() and int(words[1]) != k - start - 2:
+            raise ReadError(f"line {start + 1}: ETBLOCK says {words[1]} types and has {k - start - 2}; is it complete?")
+        return k + 1
 
-def _says_counts(lines: list[str]) -> bool:
-    """Whether every block of nodes and elements says how many it holds, which was then compared."""
-    heads = [line.split(",") for line in lines if line.upper().startswith(("NBLOCK", "EBLOCK"))]
-    return all(len(words) > 4 and words[4].strip().isdigit() and int(words[4]) > 0 for words in heads)
+    def _nodes(self, k: int, words: list[str]) -> int:
+        """Numbers, places and, where their directions are turned, names of the nodes of an NBLOCK."""
+        form = self.lines[k + 1]
+        whole, real = _columns(form)
+        head, k = k, k + 2
+        before = len(self.numbers)
+        while not re.match(r"\s*(-1|N,)", self.lines[k], re.I):
+            line = self.lines[k]
+            heads, cells = ([line[at].strip() for at in some] for some in (whole, real))
+            if not all(re.fullmatch(r"[-+]?\d+", cell) for cell in heads if cell) or line[real[-1].stop :].strip():
+                raise ReadError(
+                    f"line {k + 1}: {line.strip()[:60]!r} should be {len(whole)} whole numbers and up to {len(real)} "
+                    f"others in {form.strip()}; is it damaged?"
+                )
+            values = [float(cell.replace("D", "E")) if cell else 0.0 for cell in cells]
+            self.numbers.append(int(heads[0]))
+            self.points.append(values[:3])
+            if any(values[3:]):
+                self.turned.append(self.numbers[-1])
+            k += 1
+        _check_count(head, words, len(self.numbers) - before, "nodes")
+        return k + 1
+
+    def _elements(self, k: int, words: list[str]) -> int:
+        """Solids of an EBLOCK, and nodes of what is left out."""
+        if len(words) < 3 or words[2].upper() != "SOLID":
+            raise ReadError(
+                f"line {k + 1}: EBLOCK without the key SOLID is not known; write the archive with CDWRITE,DB"
+            )
+        width = _width(self.lines[k + 1])
+        begin, found = k, 0
+        k += 2
+        while (head := _cut(self.lines[k], width))[0] != -1:
+            found += 1
+            count, number, nodes = head[8], head[10], head[11:]
+            k += 1
+            while len(nodes) < count:
+                nodes += _cut(self.lines[k], width)
+                k += 1
+            if len(nodes) > count:
+                raise ReadError(
+                    f"line {k}: element {number} should have {count} nodes and has {len(nodes)}; is it damaged?"
+                )
+            self._element(number, self.kinds[head[1]], head[3], nodes)
+        _check_count(begin, words, found, "elements")
+        return k + 1
+
+    def _element(self, number: int, kind: str, section: int, nodes: list[int]) -> None:
+        if kind == "179" and len(nodes) >= 2:
+            self.bolts.pairs.setdefault(section, []).append((nodes[0], nodes[1]))
+        if kind in _SURFACE or kind in _LEFT_OUT:
+            self.extra += nodes
+            self.dropped[number] = kind
+            return
+        if kind not in _SOLIDS:
+            raise ReadError(f"element {number} is of type {kind}; the known ones are SOLID185, 186, 187 and 285")
+        shape, ordered = undoubled(nodes[: _SOLIDS[kind]], f"element {number} (SOLID{kind})")
+        self.rows.setdefault(shape, []).append((number, ordered))
+
+    def _component(self, k: int, words: list[str]) -> int:
+        """Numbers of a CMBLOCK."""
+        width, count = _width(self.lines[k + 1]), int(words[3].split("!")[0])
+        values: list[int] = []
+        k += 2
+        while len(values) < count:
+            values += _cut(self.lines[k], width)
+            k += 1
+        self.sets[words[2].upper()[:4]][words[1]] = _unrolled(values)
+        return k
 
 
-def _lacking(
-    lines: list[str], path: Path, sets: dict[str, dict[str, np.ndarray]], elements: set[int], nodes: set[int]
-) -> list[str]:
-    """Sentences on an end that is not there, and on components of things that are not."""
-    out = []
-    if not any(line.strip().upper() == "FINISH" for line in lines):
-        out.append(f"{path.name} has no FINISH: it may be cut short")
-    for kind, what, there in (("ELEM", "elements", elements), ("NODE", "nodes", nodes)):
-        for name, some in sets[kind].items():
-            out += not_in_file(f"the component {name!r}", what, some.tolist(), there)
-    return out
+def _check_count(head: int, words: list[str], found: int, what: str) -> None:
+    """Raise ReadError where a block has more or fewer lines than its head says."""
+    if len(words) > 4 and words[4].isdigit() and int(words[4]) not in (0, found):
+        raise ReadError(f"line {head + 1}: {words[0]} says {words[4]} {what} and has {found}; is the archive complete?")
 
 
 def _left_out(elements: list[str], commands: list[str]) -> list[str]:
@@ -181,25 +272,6 @@ class _Bolts:
         )
 
 
-def _types(lines: list[str], k: int, words: list[str], kinds: dict[int, str]) -> int:
-    """Element types of an ET command or of an ETBLOCK: number and name of each, then key options."""
-    if words[0].upper() == "ET":
-        if len(words) > 2:
-            kinds[int(words[1])] = re.sub(r"\D", "", words[2])
-        return k + 1
-    width = _width(lines[k + 1])
-    wide = re.search(r",\s*\d*a(\d+)", lines[k + 1].lower())
-    start, k = k, k + 2
-    while int(lines[k][:width]) != -1:
-        line = lines[k]
-        name = line[width : 2 * width] if wide is None or line[width : 2 * width].strip().isdigit() else line.split()[1]
-        kinds[int(line[:width])] = re.sub(r"\D", "", name)
-        k += 1
-    if words[1].isdigit() and int(words[1]) != k - start - 2:
-        raise ReadError(f"line {start + 1}: ETBLOCK says {words[1]} types and has {k - start - 2}; is it complete?")
-    return k + 1
-
-
 def _columns(form: str) -> tuple[list[slice], list[slice]]:
     """Where integers and reals stand in a line, from a Fortran format such as (3i9,6e21.13e3) or (1i7,2i9,6e21.13)."""
     group = r"(\d{1,2})([iea])(\d{1,2})(?:\.\d+(?:e\d+)?)?"
@@ -220,109 +292,17 @@ def _width(form: str) -> int:
     return int(_columns(form)[0][0].stop)
 
 
-def _nodes(
-    lines: list[str],
-    k: int,
-    words: list[str],
-    numbers: list[int],
-    points: list[list[float]],
-    turned: list[int],
-) -> int:
-    """Numbers, places and, where their directions are turned, names of the nodes of an NBLOCK."""
-    whole, real = _columns(lines[k + 1])
-    head, k = k, k + 2
-    before = len(numbers)
-    while not re.match(r"\s*(-1|N,)", lines[k], re.I):
-        line = lines[k]
-        heads, cells = ([line[at].strip() for at in some] for some in (whole, real))
-        if not all(re.fullmatch(r"[-+]?\d+", cell) for cell in heads if cell) or line[real[-1].stop :].strip():
-            raise ReadError(
-                f"line {k + 1}: {line.strip()[:60]!r} should be {len(whole)} whole numbers and up to {len(real)} "
-                f"others in {lines[head + 1].strip()}; is it damaged?"
-            )
-        values = [float(cell.replace("D", "E")) if cell else 0.0 for cell in cells]
-        numbers.append(int(heads[0]))
-        points.append(values[:3])
-        if any(values[3:]):
-            turned.append(numbers[-1])
-        k += 1
-    _counted(head, words, len(numbers) - before, "nodes")
-    return k + 1
-
-
-def _counted(head: int, words: list[str], found: int, what: str) -> None:
-    """Raise ReadError where a block has more or fewer lines than its head says."""
-    if len(words) > 4 and words[4].isdigit() and int(words[4]) not in (0, found):
-        raise ReadError(f"line {head + 1}: {words[0]} says {words[4]} {what} and has {found}; is the archive complete?")
-
-
-def _elements(
-    lines: list[str],
-    k: int,
-    words: list[str],
-    kinds: dict[int, str],
-    rows: dict[str, list[tuple[int, list[int]]]],
-    extra: list[int],
-    dropped: dict[int, str],
-    bolts: "_Bolts",
-) -> int:
-    if len(words) < 3 or words[2].upper() != "SOLID":
-        raise ReadError(f"line {k + 1}: EBLOCK without the key SOLID is not known; write the archive with CDWRITE,DB")
-    width = _width(lines[k + 1])
-    begin, found = k, 0
-    k += 2
-    while True:
-        head = _cut(lines[k], width)
-        if head[0] == -1:
-            _counted(begin, words, found, "elements")
-            return k + 1
-        found += 1
-        count, number, nodes = head[8], head[10], head[11:]
-        k += 1
-        while len(nodes) < count:
-            nodes += _cut(lines[k], width)
-            k += 1
-        if len(nodes) > count:
-            raise ReadError(
-                f"line {k}: element {number} should have {count} nodes and has {len(nodes)}; is it damaged?"
-            )
-        which = kinds[head[1]]
-        if which == "179" and len(nodes) >= 2:
-            bolts.pairs.setdefault(head[3], []).append((nodes[0], nodes[1]))
-        if which in _SURFACE or which in _LEFT_OUT:
-            extra += nodes
-            dropped[number] = which
-            continue
-        if which not in _SOLIDS:
-            raise ReadError(f"element {number} is of type {which}; the known ones are SOLID185, 186, 187 and 285")
-        kind, ordered = undoubled(
-            nodes[: _SOLIDS[which]] if which != "285" else nodes[:4], f"element {number} (SOLID{which})"
-        )
-        rows.setdefault(kind, []).append((number, ordered))
-
-
 def _cut(line: str, width: int) -> list[int]:
     cells = [line[i : i + width] for i in range(0, len(line.rstrip()), width)]
     return [int(cell) for cell in cells]
 
 
-def _component(lines: list[str], k: int, words: list[str]) -> tuple[int, np.ndarray]:
-    """The line behind a CMBLOCK, and its numbers."""
-    width, count = _width(lines[k + 1]), int(words[3].split("!")[0])
-    values: list[int] = []
-    k += 2
-    while len(values) < count:
-        values += _cut(lines[k], width)
-        k += 1
-    return k, _unrolled(values)
-
-
 def _unrolled(values: list[int]) -> np.ndarray:
     """A negative number ends a range that begins with the number before it."""
-    out: list[Index] = []
-    for before, value in zip([0, *values], values, strict=False):
-        out.append(ranged(before + 1, -value, 1, "CMBLOCK") if value < 0 else index([value]))
-    return np.concatenate([index([]), *out])
+    return joined(
+        ranged(before + 1, -value, 1, "CMBLOCK") if value < 0 else index([value])
+        for before, value in zip([0, *values], values, strict=False)
+    )
 
 
 TYPE = 9101  # of the stiffness; the next is that of the dampers
@@ -345,6 +325,18 @@ def constants(blocks: Array) -> Array:
     for a, b, sign in ((0, 0, 1), (6, 6, 1), (0, 6, -1), (6, 0, -1)):
         whole[:, a : a + 3, b : b + 3] = sign * blocks
     return whole[:, ROW, COLUMN]
+
+
+def _element_type(kind: int, name: str = "MATRIX27") -> list[str]:
+    """Commands of the element type of stiffness or dampers."""
+    return [f"ET,{kind},{name}", f"KEYOPT,{kind},2,0", f"KEYOPT,{kind},3,{4 if kind == TYPE else 5}"]
+
+
+def _real_constants(number: int, values: Array) -> list[str]:
+    """C1 to C78 of one set as commands, six in a line of 128 columns."""
+    words = ["0" if v == 0 else real(float(v), 17) for v in values]
+    rows = [",".join(words[j : j + 6]) for j in range(0, len(words), 6)]
+    return [f"R,{number},{rows[0]}", *(f"RMORE,{row}" for row in rows[1:])]
 
 
 def _sets(deck: JointDeck) -> list[tuple[int, Array, np.ndarray]]:
@@ -372,11 +364,9 @@ def matrix27(deck: JointDeck) -> str:
     one, two = deck.ends
     number, real_set = deck.first_element, deck.first_element
     for kind, sets, group in _sets(deck):
-        lines += [f"ET,{kind},MATRIX27", f"KEYOPT,{kind},2,0", f"KEYOPT,{kind},3,{4 if kind == TYPE else 5}"]
+        lines += _element_type(kind)
         for k, row in enumerate(sets):
-            words = ["0" if v == 0 else real(float(v), 17) for v in row]  # six in a line of 128 columns
-            lines.append(f"R,{real_set + k}," + ",".join(words[:6]))
-            lines += ["RMORE," + ",".join(words[j : j + 6]) for j in range(6, 78, 6)]
+            lines += _real_constants(real_set + k, row)
         lines.append(f"TYPE,{kind}")
         last = -1
         for i in np.argsort(group, kind="stable"):
@@ -395,10 +385,9 @@ def archive(deck: JointDeck) -> str:
     one, two = deck.ends
     sets = _sets(deck)
     for kind, _, _ in sets:
-        lines += [f"ET,{kind},27", f"KEYOPT,{kind},2,0", f"KEYOPT,{kind},3,{4 if kind == TYPE else 5}"]
+        lines += _element_type(kind, "27")
     count = sum(len(group) for *_, group in sets)
-    last = deck.first_element + count - 1
-    lines += [f"EBLOCK,19,SOLID,{last},{count}", "(19i10)"]
+    lines += [f"EBLOCK,19,SOLID,{deck.first_element + count - 1},{count}", "(19i10)"]
     number, real_set = deck.first_element, deck.first_element
     for kind, rows, group in sets:
         for i, g in enumerate(group):
@@ -436,8 +425,7 @@ def combin14(deck: JointDeck) -> str:
         n, t1, _ = deck.axes[leader]
         # LOCAL by three points: origin, a point on x, a point in the plane x y
         lines += ["*GET,JKCS,ACTIVE,0,CSYS", "CSYS,0", "*GET,JKN,NODE,0,NUM,MAX"]
-        for j, at in enumerate((np.zeros(3), n, t1), 1):
-            lines.append(f"N,JKN+{j}," + ",".join(real(float(x), 20) for x in at))
+        lines += [f"N,JKN+{j},{reals(at)}" for j, at in enumerate((np.zeros(3), n, t1), 1)]
         lines += [f"CS,{TYPE + g},0,JKN+1,JKN+2,JKN+3", f"CSYS,{TYPE + g}"]
         lines += [f"NROTAT,{node}" for i in np.flatnonzero(frame == g) for node in (one[i], two[i])]
         lines += ["NDELE,JKN+1,JKN+3", "CSYS,JKCS"]
@@ -448,7 +436,7 @@ def combin14(deck: JointDeck) -> str:
         values = np.column_stack([k[:, axis], c[:, axis]])
         first, group = grouped(values / np.maximum(np.abs(values).max(axis=0), 1e-300))
         for g, leader in enumerate(first):
-            lines += [f"R,{real_set}," + ",".join(real(float(v), 20) for v in values[leader]), f"REAL,{real_set}"]
+            lines += [f"R,{real_set},{reals(values[leader])}", f"REAL,{real_set}"]
             for i in np.flatnonzero(group == g):
                 lines.append(f"EN,{number},{one[i]},{two[i]}")
                 number += 1
@@ -482,12 +470,7 @@ def condensed(deck: CondensedDeck) -> dict[str, str]:
     factors = ", ".join(f"{value:.3g}" for value in lost)
     note = f"MATRIX27 takes no loss factor; those of the six motions are {factors}" if np.any(lost) else "no loss"
     lines = [*comments("!", *deck.facts, note), "/PREP7"]
-    for node, at in zip(deck.nodes, deck.places, strict=True):
-        lines.append(f"N,{node}," + ",".join(real(float(x), 20) for x in at))
-    lines += [f"ET,{TYPE},MATRIX27", f"KEYOPT,{TYPE},2,0", f"KEYOPT,{TYPE},3,4"]
-    row = deck.in_units(deck.stiffness)[ROW, COLUMN]
-    words = ["0" if v == 0 else real(float(v), 17) for v in row]
-    lines.append(f"R,{deck.element}," + ",".join(words[:6]))
-    lines += ["RMORE," + ",".join(words[j : j + 6]) for j in range(6, 78, 6)]
+    lines += [f"N,{node},{reals(at)}" for node, at in zip(deck.nodes, deck.places, strict=True)]
+    lines += [*_element_type(TYPE), *_real_constants(deck.element, deck.in_units(deck.stiffness)[ROW, COLUMN])]
     lines += [f"TYPE,{TYPE}", f"REAL,{deck.element}", f"EN,{deck.element},{deck.nodes[0]},{deck.nodes[1]}"]
     return {"condensed_matrix27.inp": "\n".join(lines) + "\n"}

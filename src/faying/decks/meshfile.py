@@ -1,6 +1,6 @@
 """Meshes of other programs: from what a file holds to parts and faces, with the faults that such files have."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from faying import units
-from faying.decks.conforming import bodies, check_apart
+from faying.decks.conforming import among, bodies, check_apart, keys_of
 from faying.decks.programs import MESHES, reader_of
-from faying.decks.raw import Pretension, RawMesh, index
+from faying.decks.raw import Pretension, RawMesh, joined, understood
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.mesh import Mesh, least_jacobian
@@ -108,14 +108,8 @@ def _meshed(
 
 def _read(module: Any, file: Path) -> RawMesh:
     """What a format's reader finds; a word where it expects a number is the file's fault, not a crash."""
-    try:
+    with understood(f"{file} has something that Faying does not understand"):
         raw: RawMesh = module.read(file)
-    except (ValueError, IndexError, KeyError, OverflowError) as fault:
-        if isinstance(fault, InputError):
-            raise
-        raise ReadError(
-            f"{file} has something that Faying does not understand ({fault}); is the file complete?"
-        ) from None
     if not len(raw.numbers):
         raise ReadError(f"{file} has no nodes; is the file complete?")
     if not any(len(numbers) for numbers, _ in raw.elements.values()):
@@ -177,15 +171,13 @@ class _Builder:
         cells = self._welded(points, cells, owner) if wanted is not None else cells
         blocks: dict[str, Blocks] = {}
         for i, part in enumerate(names):
-            start, some = 0, []
-            for block in cells:
-                mine = owner[start : start + len(block)] == i
-                start += len(block)
-                if mine.any():
-                    some.append(block[mine])
-            blocks[part] = tuple(some)
+            mine = [block[of == i] for block, of in zip(cells, _by_block(owner, cells), strict=True)]
+            blocks[part] = tuple(block for block in mine if len(block))
         faces, face_part = self._faces(numbers, cells, blocks)
         return self._split(points, blocks, faces, face_part)
+
+    def _note(self, code: str, text: str) -> None:
+        self.notes.append(Note(code=code, text=text))
 
     def _index(self, numbers: Index, what: str) -> Index:
         """Places of nodes by number."""
@@ -201,13 +193,11 @@ class _Builder:
         return order[place]
 
     def _cells(self) -> list[Index]:
-        repeated, count = np.unique(self.raw.numbers, return_counts=True)
-        if np.any(count > 1):
-            raise ReadError(f"{self.name}: node {repeated[count > 1][0]} is given twice")
-        every = np.concatenate([numbers for numbers, _ in self.raw.elements.values()])
-        repeated, count = np.unique(every, return_counts=True)
-        if np.any(count > 1):
-            raise ReadError(f"{self.name}: element {repeated[count > 1][0]} is given twice")
+        elements = np.concatenate([numbers for numbers, _ in self.raw.elements.values()])
+        for what, numbers in (("node", self.raw.numbers), ("element", elements)):
+            once, count = np.unique(numbers, return_counts=True)
+            if np.any(count > 1):
+                raise ReadError(f"{self.name}: {what} {once[count > 1][0]} is given twice")
         out = []
         for kind, (numbers, nodes) in self.raw.elements.items():
             flat = self._index(nodes.ravel(), f"an element ({kind}, {numbers[0]} to {numbers[-1]})")
@@ -238,10 +228,9 @@ class _Builder:
         if len(loose) > len(lost):
             text = f"{len(loose) - len(lost)} reference points are left out, with the couplings that name them: "
             text += few(loose[np.isin(loose, points_of_reference)])
-            self.notes.append(Note(code="reference-points", text=text))
+            self._note("reference-points", text)
         if len(lost):
-            text = f"{len(lost)} nodes belong to no element and are left out: {few(lost)}"
-            self.notes.append(Note(code="left-out", text=text))
+            self._note("left-out", f"{len(lost)} nodes belong to no element and are left out: {few(lost)}")
 
     def _parts(
         self, numbers: Index, cells: list[Index], wanted: Mapping[str, str] | Sequence[str] | None
@@ -252,19 +241,15 @@ class _Builder:
             plain, piece = self._parts(numbers, cells, None)
             sets = {part: numbers[piece == k] for k, part in enumerate(plain)} | sets
             wished = dict(wanted) if isinstance(wanted, Mapping) else {name: name for name in wanted}
-            chosen = {part: name if name in sets else _several(name) for part, name in wished.items()}
-            for part, joined in chosen.items():
-                for name in [joined] if isinstance(joined, str) else joined:
+            chosen = {part: [name] if name in sets else _several(name) for part, name in wished.items()}
+            for part, together in chosen.items():
+                for name in together:
                     if name not in sets:
                         raise InputError(
                             f"{self.name}: part {part!r} names the element set {name!r}; the file holds "
                             f"{', '.join(map(repr, sets)) or 'none'}"
                         )
-            united = {
-                part: np.unique(np.concatenate([sets[name] for name in ([one] if isinstance(one, str) else one)]))
-                for part, one in chosen.items()
-            }
-            divided = _dividing(numbers, united)
+            divided = _dividing(numbers, {part: joined(sets[name] for name in some) for part, some in chosen.items()})
             if divided is None:
                 raise InputError(
                     f"{self.name}: the element sets {', '.join(wished.values())} do not divide the elements; each "
@@ -302,21 +287,19 @@ class _Builder:
 
     def _say_undivided(self, numbers: Index, bodies: Mapping[str, Index]) -> None:
         """A note where the parts that the file makes leave out some of its solids, and so name none."""
-        lacking = ~np.isin(numbers, np.concatenate([index([]), *bodies.values()]))
+        lacking = ~np.isin(numbers, joined(bodies.values()))
         if bodies and lacking.any():
             text = (
                 f"{np.count_nonzero(lacking)} of {len(numbers)} solids, {numbers[lacking][0]} for one, are in none of "
                 f"{', '.join(map(repr, bodies))}; the parts are named by what hangs together"
             )
-            self.notes.append(Note(code="undivided", text=text))
+            self._note("undivided", text)
 
     def _welded(self, points: Array, cells: list[Index], owner: Index) -> list[Index]:
         """The elements with one node for each pair that a section of a bolt cuts in two within one part."""
         of = np.full(len(points), -1, dtype=np.int64)
-        start = 0
-        for block in cells:
-            of[block] = owner[start : start + len(block), None]
-            start += len(block)
+        for block, mine in zip(cells, _by_block(owner, cells), strict=True):
+            of[block] = mine[:, None]
         one = np.arange(len(points))
         close = CLOSE * float(np.linalg.norm(np.ptp(points, axis=0)))
         for bolt in self.raw.pretensions:
@@ -327,7 +310,7 @@ class _Builder:
             one[b[same]] = a[same]
             if same.any():
                 text = f"{bolt.text}: the two halves of the bolt are one part, and {same.sum()} pairs of its nodes one"
-                self.notes.append(Note(code="bolt", text=text))
+                self._note("bolt", text)
         return [one[block] for block in cells]
 
     def _called(self, numbers: Index) -> str | None:
@@ -347,13 +330,13 @@ class _Builder:
         self._of_nodes(blocks, skins, found)
         for label, rows in self.raw.face_elements.items():
             given = [self._index(block.ravel(), f"the face {label!r}").reshape(block.shape) for block in rows]
-            key = np.concatenate([side_key(block, n) for block in given])
-            on = np.isin(key, np.concatenate([side_key(faces, n) for outer in skins.values() for faces in outer]))
+            key = keys_of(given, n)
+            on = np.isin(key, joined(keys_of(outer, n) for outer in skins.values()))
             if on.any():
                 self._by_key(label, key[on], skins, found)
             if not on.all():
                 text = f"{np.count_nonzero(~on)} shells {label!r} are not on a solid and are left out, with their "
-                self.notes.append(Note(code="left-out", text=text + "stiffness and mass"))
+                self._note("left-out", text + "stiffness and mass")
         self._of_sides(numbers, cells, skins, found)
         faces: dict[str, Blocks] = {}
         face_part: dict[str, str] = {}
@@ -377,8 +360,8 @@ class _Builder:
             covered = [part for part, mine in blocks.items() if inside[nodes_of(mine)].all()]
             for part, outer in skins.items():
                 # the set of all nodes of one part names no side of another that shares nodes with it
-                theirs = [side_key(f, n) for other in covered if other != part for f in skins[other]]
-                here = _on(_without(outer, theirs, n), inside)
+                theirs = joined(keys_of(skins[other], n) for other in covered if other != part)
+                here = _on(among(outer, theirs, n, others=True), inside)
                 if here:
                     found.setdefault(label, {})[part] = here
 
@@ -387,9 +370,7 @@ class _Builder:
     ) -> None:
         """The faces that surfaces name, side by side or by the elements whose free sides they are."""
         n, order = len(self.raw.numbers), np.argsort(numbers)
-        every, count = np.unique(
-            np.concatenate([side_key(f, n) for outer in skins.values() for f in outer]), return_counts=True
-        )
+        every, count = np.unique(joined(keys_of(outer, n) for outer in skins.values()), return_counts=True)
         between = every[count > 1]  # sides that two parts share are not free ones
         for label, pairs in self.raw.side_sets.items():
             place = np.minimum(np.searchsorted(numbers[order], pairs[:, 0]), len(numbers) - 1)
@@ -404,10 +385,9 @@ class _Builder:
                 self._by_key(label, key, skins, found)
             if len(whole):
                 for part, outer in skins.items():
-                    free = _without(outer, [between], n)
-                    free = tuple(f[np.isin(side_key(f, n), whole)] for f in free)
-                    if any(len(f) for f in free):
-                        found.setdefault(label, {})[part] = tuple(f for f in free if len(f))
+                    free = among(outer, np.setdiff1d(whole, between), n)
+                    if free:
+                        found.setdefault(label, {})[part] = free
 
     def _side_keys(self, label: str, at: Index, sides: Index, cells: list[Index]) -> tuple[Index, Index]:
         """Keys of the sides named one by one, and of all sides of elements named as a whole."""
@@ -428,18 +408,16 @@ class _Builder:
                     f"{count}"
                 )
             start += len(block)
-        empty = np.zeros(0, dtype=np.int64)
-        return np.concatenate([empty, *named]), np.concatenate([empty, *whole])
+        return joined(named), joined(whole)
 
     def _by_key(self, label: str, key: Index, skins: Mapping[str, Blocks], found: dict[str, dict[str, Blocks]]) -> None:
         n = len(self.raw.numbers)
         hit = np.zeros(len(key), dtype=bool)
         for part, outer in skins.items():
-            here = tuple(faces[np.isin(side_key(faces, n), key)] for faces in outer)
-            here = tuple(faces for faces in here if len(faces))
+            here = among(outer, key, n)
             if here:
                 found.setdefault(label, {})[part] = here
-                hit |= np.isin(key, np.concatenate([side_key(faces, n) for faces in here]))
+                hit |= np.isin(key, keys_of(here, n))
         if not hit.any():
             text = (
                 f"the surface {label!r} lies inside its part, on {len(key)} element faces that are not on "
@@ -447,7 +425,7 @@ class _Builder:
                 "solid, and is left out; where it is a joint, put the elements on each side into an element set of "
                 "their own, which is then a part with its own face"
             )
-            self.notes.append(Note(code="left-out", text=text))
+            self._note("left-out", text)
         elif not hit.all():
             found.pop(label)
             text = (
@@ -456,7 +434,7 @@ class _Builder:
                 "and it is left out; where elements of one part share the nodes there, put those on each side into an "
                 "element set of their own, which is then a part with its own face"
             )
-            self.notes.append(Note(code="left-out", text=text))
+            self._note("left-out", text)
 
     def _split(
         self, points: Array, blocks: dict[str, Blocks], faces: dict[str, Blocks], face_part: dict[str, str]
@@ -466,7 +444,7 @@ class _Builder:
         found = bodies(blocks, faces, face_part, n)
         check_apart(self.name, blocks, faces, (face_part, found), self.raw.numbers)
         if found.text:
-            self.notes.append(Note(code="one-body", text=found.text))
+            self._note("one-body", found.text)
         place, key = found.place, found.keys(blocks, n)
         faces = {**faces, **{name: some for name, (_, some) in found.sides.items()}}
         face_part = {**face_part, **{name: part for name, (part, _) in found.sides.items()}}
@@ -512,10 +490,15 @@ class _Builder:
             )
 
 
-def _several(name: str) -> str | list[str]:
+def _several(name: str) -> list[str]:
     """The sets that a name such as "steel + alu" joins; the name where there is no plus sign."""
     some = [one.strip() for one in name.split("+")]
-    return some if len(some) > 1 and all(some) else name
+    return some if len(some) > 1 and all(some) else [name]
+
+
+def _by_block(values: Index, cells: list[Index]) -> list[Index]:
+    """Values of all elements as those of each block."""
+    return np.split(values, np.cumsum([len(block) for block in cells])[:-1])
 
 
 def _dividing(numbers: Index, sets: Mapping[str, Index]) -> Index | None:
@@ -534,27 +517,11 @@ def _pieces(cells: list[Index], nodes: int) -> Index:
     from scipy.sparse.csgraph import connected_components
 
     count = sum(len(block) for block in cells)
-    rows = np.concatenate(list(_rows(cells)))
+    rows = np.repeat(np.arange(count), np.concatenate([np.full(len(block), block.shape[1]) for block in cells]))
     columns = np.concatenate([block.ravel() for block in cells]) + count
     graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count + nodes, count + nodes))
     label = connected_components(graph, directed=False)[1][:count]
     return np.unique(label, return_inverse=True)[1]
-
-
-def _rows(cells: list[Index]) -> Iterator[Index]:
-    start = 0
-    for block in cells:
-        yield start + np.repeat(np.arange(len(block)), block.shape[1])
-        start += len(block)
-
-
-def _without(outer: Blocks, keys: Sequence[Index], nodes: int) -> Blocks:
-    """Element faces that have none of some keys."""
-    if not keys:
-        return outer
-    gone = np.concatenate(list(keys))
-    left = tuple(faces[~np.isin(side_key(faces, nodes), gone)] for faces in outer)
-    return tuple(faces for faces in left if len(faces))
 
 
 def _on(outer: Blocks, inside: Index) -> Blocks:

@@ -11,6 +11,7 @@ with CID since its grids coincide, CELAS2 (K, G1, C1, G2, C2, GE), DMIG with one
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,14 +24,16 @@ from faying.decks.raw import (
     face_blocks,
     gathered,
     index,
+    joined,
     not_in_file,
     once,
     read_text,
+    understood,
 )
 from faying.decks.vocabulary import left_out
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
-from faying.typing import Array, Index
+from faying.typing import Index
 
 # commands of the case control whose sets are of elements
 OF_ELEMENTS = (
@@ -45,12 +48,8 @@ def read(path: Path) -> RawMesh:
     case, notes = _case_sets(path)
     bulk = Bulk()
     for name, fields, where in cards(path):
-        try:
+        with understood(f"{where}: {name} {fields[0]} cannot be read"):
             bulk.take(name, fields, where)
-        except ReadError:
-            raise
-        except (ValueError, IndexError) as fault:
-            raise ReadError(f"{where}: {name} {fields[0]} cannot be read ({fault}); is the file complete?") from None
     if not bulk.grids or not bulk.solids:
         raise ReadError(
             f"{path} holds {len(bulk.grids)} GRID cards and {len(bulk.solid)} solid elements; write both into it"
@@ -59,10 +58,10 @@ def read(path: Path) -> RawMesh:
         f"{count} cards {name} are left out, with their stiffness and mass" for name, count in bulk.left_out.items()
     ]
     notes += left_out(bulk.constraints, "")
-    grids = np.sort(index(bulk.grids))
+    numbers = index(bulk.grids)
     for name, some in case.items():
         single = index(first for first, last in some if first == last)
-        if len(np.setdiff1d(single, grids)):
+        if len(np.setdiff1d(single, numbers)):
             notes.append(f"{name} of the case control has something that is not a grid; it is left out")
         else:
             bulk.sets.setdefault(name, some)
@@ -71,10 +70,8 @@ def read(path: Path) -> RawMesh:
         if re.search(r"^\s*BEGIN\s+BULK", text, re.I | re.M):
             raise ReadError(f"{path} ends without ENDDATA; the file is cut short")
         notes.append(f"{path.name} has no ENDDATA: it may be cut short")
-    numbers = index(bulk.grids)
     loaded = (fields[1] for fields, _ in bulk.loads if fields[6].upper() != "THRU" and fields[1].isdigit())
     notes += not_in_file("PLOAD4", "elements", map(int, loaded), bulk.solid.keys() | bulk.others)
-    turned = [n for n, (_, _, cd) in bulk.grids.items() if (bulk.default[1] if cd is None else cd) != 0]
     return RawMesh(
         numbers=numbers,
         points=np.array([bulk.place(grid) for grid in bulk.grids]),
@@ -85,7 +82,7 @@ def read(path: Path) -> RawMesh:
         face_elements={name: face_blocks(some) for name, some in bulk.skins.items()},
         extra=index(node for some in bulk.skins.values() for nodes in some for node in nodes),
         references=index(bulk.references),
-        turned=index(turned),
+        turned=index(n for n, (_, _, cd) in bulk.grids.items() if (bulk.default[1] if cd is None else cd) != 0),
         notes=tuple(notes),
     )
 
@@ -97,7 +94,7 @@ def _within(ranges: list[tuple[int, int]], numbers: Index) -> Index:
         index([first]) if first == last else ranked[slice(*np.searchsorted(ranked, [first, last + 1]))]
         for first, last in ranges
     ]
-    return np.unique(np.concatenate([index([]), *found]))
+    return np.unique(joined(found))
 
 
 def _case_sets(path: Path) -> tuple[dict[str, list[tuple[int, int]]], list[str]]:
@@ -172,7 +169,7 @@ def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
         if card != "DMIG":
             continue
         name = fields[0].upper()
-        try:
+        with understood(f"{where}: DMIG {name} cannot be read"):
             if fields[1] == "0":
                 if int(fields[3] or 1) > 2:
                     raise ReadError(f"{where}: DMIG {name} is complex; stiffness and mass are real")
@@ -183,10 +180,6 @@ def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
                 if fields[k]:
                     entry = (int(fields[k]), int(fields[k + 1] or 0)), column, number(fields[k + 2])
                     entries.setdefault(name, []).append(entry)
-        except ReadError:
-            raise
-        except (ValueError, IndexError) as fault:
-            raise ReadError(f"{where}: DMIG {name} cannot be read ({fault}); is the file complete?") from None
     for name in names:
         if name.upper() not in entries:
             raise ReadError(f"{path} has no DMIG {name}; it has {', '.join(sorted(entries)) or 'none'}")
@@ -297,28 +290,28 @@ def celas2(deck: JointDeck) -> str:
 def dmig(deck: JointDeck) -> str:
     """Write the joint as DMIG matrices KJOINT and, for the loss, K4JOINT (structural) or BJOINT (viscous)."""
     chosen = ["case control: K2GG = KJOINT"]
-    bulk = _dmig("KJOINT", deck, deck.stiffness)
+    bulk = _dmig("KJOINT", deck.entries, deck.pairs.matrix(deck.stiffness))
     if deck.paper and deck.dampers is not None:
         chosen += ["case control: B2GG = BJOINT", deck.damping_note()]
-        bulk += _dmig("BJOINT", deck, deck.dampers)
+        bulk += _dmig("BJOINT", deck.entries, deck.pairs.matrix(deck.dampers))
     elif np.any(deck.loss):
         chosen.append("case control: K42GG = K4JOINT, the loss as a structural damping matrix")
-        bulk += _dmig("K4JOINT", deck, deck.loss)
+        bulk += _dmig("K4JOINT", deck.entries, deck.pairs.matrix(deck.loss))
     return "\n".join([*deck.header("$", *chosen), *bulk]) + "\n"
 
 
-def _dmig(name: str, deck: JointDeck, blocks: Array) -> list[str]:
+def _dmig(name: str, entries: Index, matrix: Any) -> list[str]:
+    """The lower triangle of a matrix, column by column; entries: node and direction of each row."""
     from scipy.sparse import tril
 
-    lower = tril(deck.pairs.matrix(blocks)).tocsc()
-    n = deck.mesh.numbers
+    lower = tril(matrix).tocsc()
     lines = card("DMIG", name, 0, 6, 2, 0)
     for j in np.flatnonzero(np.diff(lower.indptr)):
         here = slice(lower.indptr[j], lower.indptr[j + 1])
-        words: list[Field] = [name, int(n[j // 3]), int(j % 3 + 1), ""]
+        words: list[Field] = [name, *entries[j].tolist(), ""]
         for i, v in zip(lower.indices[here], lower.data[here], strict=True):
             if v:
-                words += [int(n[i // 3]), int(i % 3 + 1), float(v), ""]
+                words += [*entries[i].tolist(), float(v), ""]
         if len(words) > 4:
             lines += card("DMIG", *words)
     return lines
@@ -329,34 +322,20 @@ COUPLED = 1e-2  # of the mean of two diagonals: a coupling above it a CBUSH cann
 
 def condensed(deck: CondensedDeck) -> dict[str, str]:
     """Bulk data of a condensed joint, by name: a DMIG, and a CBUSH where both points coincide and little couples."""
-    grids = [
-        line
-        for node, at in zip(deck.nodes, deck.places, strict=True)
-        for line in card("GRID", node, 0, *map(float, at), 0)
-    ]
+    grids: list[str] = []
+    for node, at in zip(deck.nodes, deck.places, strict=True):
+        grids += card("GRID", node, 0, *map(float, at), 0)
     chosen = ["case control: K2GG = KJOINT"]
-    lines = _triangle("KJOINT", deck, deck.in_units(deck.stiffness))
+    lines = _dmig("KJOINT", deck.entries, deck.in_units(deck.stiffness))
     if np.any(deck.loss):
         chosen.append("case control: K42GG = K4JOINT, the loss as a structural damping matrix")
-        lines += _triangle("K4JOINT", deck, deck.in_units(deck.loss))
+        lines += _dmig("K4JOINT", deck.entries, deck.in_units(deck.loss))
     out = {"condensed_dmig.bdf": "\n".join([*comments("$", *deck.facts, *chosen), *grids, *lines]) + "\n"}
     bush = _bush(deck)
     if bush:
         note, cards = bush
         out["condensed_cbush.bdf"] = "\n".join([*comments("$", *deck.facts, note), *grids, *cards]) + "\n"
     return out
-
-
-def _triangle(name: str, deck: CondensedDeck, matrix: Array) -> list[str]:
-    lines = card("DMIG", name, 0, 6, 2, 0)
-    for j, (node, direction) in enumerate(deck.entries):
-        words: list[Field] = [name, node, direction, ""]
-        for i in range(j, 12):
-            if matrix[i, j]:
-                words += [*deck.entries[i], float(matrix[i, j]), ""]
-        if len(words) > 4:
-            lines += card("DMIG", *words)
-    return lines
 
 
 def _bush(deck: CondensedDeck) -> tuple[str, list[str]] | None:

@@ -1,6 +1,7 @@
 """What a file holds before it becomes a mesh or matrices: the file's own numbers, its own unit, its sets."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -16,6 +17,9 @@ from faying.typing import Array, Index
 GREATEST = 10**12  # number of a node or an element
 MOST = 20_000_000  # numbers of a range
 DIGITS = 30  # of a number of a node or a direction, zeros in front included
+DEEPEST, MOST_FILES = 20, 500  # of included files
+# Nastran and Code_Aster put the middle nodes of the upright edges before those of the top; by number of nodes
+UPRIGHT_FIRST = {20: [*range(12), *range(16, 20), *range(12, 16)], 15: [*range(9), *range(12, 15), *range(9, 12)]}
 
 Matrices: TypeAlias = tuple[Any, Any, Index]
 """Stiffness and mass (n, n), sparse, and dofs (n, 2): number of the node, direction 1, 2, 3."""
@@ -69,14 +73,13 @@ class RawMesh:
     counted: bool = False
 
     def __post_init__(self) -> None:
-        named = {"node": [self.numbers], "element": [numbers for numbers, _ in self.elements.values()]}
-        for what, several in named.items():
-            for some in several:
-                wrong = some[(some < 1) | (some > GREATEST)]
-                if len(wrong):
-                    raise ReadError(
-                        f"{what} {wrong[0]}: numbers of {what}s are between 1 and {GREATEST:,}; is the file complete?"
-                    )
+        elements = [("element", numbers) for numbers, _ in self.elements.values()]
+        for what, some in [("node", self.numbers), *elements]:
+            wrong = some[(some < 1) | (some > GREATEST)]
+            if len(wrong):
+                raise ReadError(
+                    f"{what} {wrong[0]}: numbers of {what}s are between 1 and {GREATEST:,}; is the file complete?"
+                )
         if self.points.shape != (len(self.numbers), 3) or not np.all(np.isfinite(self.points)):
             bad = self.numbers[~np.isfinite(self.points).all(axis=-1)] if self.points.ndim == 2 else self.numbers
             raise ReadError(f"node {bad[0] if len(bad) else 1} has no three finite coordinates; is the file complete?")
@@ -91,6 +94,11 @@ def index(values: Iterable[Any]) -> Index:
         raise ReadError(
             f"the number {max(numbers, key=abs):.3g} is none of a node or an element; is the file complete?"
         ) from None
+
+
+def joined(blocks: Iterable[Index]) -> Index:
+    """Several arrays of numbers as one, which is empty where there are none."""
+    return np.concatenate([np.zeros(0, dtype=np.int64), *blocks])
 
 
 def ranged(first: int, last: int, step: int, where: str) -> Index:
@@ -162,6 +170,29 @@ def read_text(path: Path, what: str) -> str:
         return path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as fault:
         raise ReadError(f"cannot read the {what} {path}: {fault.strerror or fault}") from None
+
+
+def check_included(path: Path, seen: tuple[Path, ...], count: list[int]) -> None:
+    """Count one more file of those that a file includes. Raises ReadError for too many, and for one in itself.
+
+    seen: the files that led to it; count: how many were read before, which rises.
+    """
+    count[0] += 1
+    if path.resolve() in seen:
+        raise ReadError(f"{path} includes itself")
+    if len(seen) > DEEPEST or count[0] > MOST_FILES:
+        raise ReadError(f"{path}: more than {MOST_FILES} files are included, or {DEEPEST} deep; write them into one")
+
+
+@contextmanager
+def understood(what: str) -> Iterator[None]:
+    """Raise ReadError where a word is not the number that it should be, or a line ends too early; what: is read."""
+    try:
+        yield
+    except (ValueError, IndexError, KeyError, OverflowError) as fault:
+        if isinstance(fault, InputError):
+            raise
+        raise ReadError(f"{what} ({fault}); is the file complete?") from None
 
 
 def numbers_of(path: Path, text: str, count: int | None = None) -> Array:

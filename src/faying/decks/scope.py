@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from faying.decks.keywords import DATA, Block
-from faying.decks.raw import index, ranged
+from faying.decks.raw import index, ranged, understood
 from faying.decks.vocabulary import abaqus_kind
 from faying.errors import ReadError
 from faying.typing import Array, Index
@@ -92,7 +92,7 @@ def take(block: Block, scope: Scope) -> None:
     strange = [key for key in options if keyword in OPTIONS and key not in OPTIONS[keyword]]
     if strange:
         scope.notes.append(f"{block.where}: *{keyword}: not known, and passed over: {', '.join(strange)}")
-    try:
+    with understood(f"{block.where}: *{keyword} has something that is not a number"):
         if keyword == "NODE":
             _nodes(block, scope)
         elif keyword == "SYSTEM":
@@ -118,12 +118,6 @@ def take(block: Block, scope: Scope) -> None:
             scope.loads += [(row[0], float(row[2])) for row in rows]
         elif keyword == "TRANSFORM":
             scope.turned.append(options.get("NSET", ""))
-    except ReadError:
-        raise
-    except (ValueError, IndexError, OverflowError) as fault:
-        raise ReadError(
-            f"{block.where}: *{keyword} has something that is not a number ({fault}); is the file complete?"
-        ) from None
 
 
 def _nodes(block: Block, scope: Scope) -> None:
