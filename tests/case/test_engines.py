@@ -1,10 +1,14 @@
 """One study has one answer, whatever engine solves it and whatever memory is free."""
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+import faying
 from faying.answer.run import run
 from faying.case.engine import RANGE_ERROR
 from faying.errors import InputError
@@ -46,6 +50,16 @@ def test_free_memory_decides_nothing(study, plenty, gigabytes, monkeypatch):
     agree(short, plenty)
 
 
+def test_threads_decide_nothing(study, plenty, tmp_path):
+    """Another process, as libraries read the number of their threads when they are loaded."""
+    file = tmp_path / "two-threads.nc"
+    code = "import sys, faying; faying.run(sys.argv[1]).save(sys.argv[2])"
+    two = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "2")
+    path = study.folder / "study.toml"
+    subprocess.run([sys.executable, "-c", code, str(path), str(file)], env=os.environ | two, check=True)
+    agree(faying.load(file), plenty)
+
+
 def agree(one, other):
     """Results of two engines: frequencies to 1e-8, ends of ranges to what they are solved to, pressures to 1e-7."""
     for name in ("frequencies", "free", "bonded"):
@@ -74,7 +88,7 @@ def test_a_joint_that_slips_has_one_answer(study):
 @pytest.mark.slow
 @pytest.mark.parametrize("example", EXAMPLES, ids=str)
 def test_every_example_has_one_answer(example, tmp_path):
-    study = copied(ROOT / example, tmp_path / "example")
+    study = copied(ROOT / example, tmp_path / "examples")
     agree(run(study), run(study, engine="direct"))
 
 

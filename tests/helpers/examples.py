@@ -14,10 +14,11 @@ MEASURED = MEASURED / "brb_surface_data.mat"
 
 
 def copied(study, target):
-    """The path of the study of an example in a copy of its folder; skips where its data cannot be made."""
-    shutil.copytree(study.parent, target, ignore=shutil.ignore_patterns("results", "data"))
-    if (target / "make_data.py").is_file():
+    """The path of the study of an example in a copy of all examples; skips where its data cannot be made."""
+    shutil.copytree(ROOT / "examples", target, ignore=shutil.ignore_patterns("results", "data"))
+    path = target / study.relative_to(ROOT / "examples")
+    if (path.parent / "make_data.py").is_file():
         if not MEASURED.is_file():
             pytest.skip(f"the measured interface is absent: {MEASURED}; set FAYING_DATA")
-        subprocess.run([sys.executable, str(target / "make_data.py"), str(MEASURED)], check=True)
-    return target / study.name
+        subprocess.run([sys.executable, str(path.parent / "make_data.py"), str(MEASURED)], check=True)
+    return path

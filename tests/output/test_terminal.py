@@ -111,6 +111,6 @@ def test_commands_fit(arguments, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_the_run_of_every_example_fits(path, tmp_path):
-    printed = of_run(faying.run(Study.read(copied(path, tmp_path / "example"))))
+    printed = of_run(faying.run(Study.read(copied(path, tmp_path / "examples"))))
     assert "modes at" in printed
     assert wide(printed) == []
