@@ -67,11 +67,11 @@ LIMITS = frozenset(
     }
 )
 NUMBER = re.compile(r"(?<![\w.])\d+(?:,\d{3})*(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")
-MOST_NAMES = 3  # of joints in one note
+MAX_NAMES = 3  # of joints in one note
 FIRST_NOTES = 3  # that stand before the tables
 SLIGHT = 0.05  # share of a joint below which a note comes after the others of its severity
 OF_ALTERNATIVE = "alternative "  # begins what is said of a law that was not asked to answer
-MOST_DIFFERENCES = 3  # numbers that may differ between notes that are said as one
+MAX_DIFFERENCES = 3  # numbers that may differ between notes that are said as one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,7 +158,7 @@ def _as_one(group: Sequence[Note]) -> Sequence[Note]:
     rows = [[NUMBER.findall(part) for part in _around(note)] for note in distinct]
     numbers = [before + after for before, after in rows]
     differing = [k for k in range(len(numbers[0])) if len({row[k] for row in numbers}) > 1]
-    if len(distinct) < 2 or len(differing) > MOST_DIFFERENCES:
+    if len(distinct) < 2 or len(differing) > MAX_DIFFERENCES:
         if len(joints) < 2:
             return distinct
         return [one for joint in joints for one in _as_one([note for note in distinct if note.joint == joint])]
@@ -173,8 +173,8 @@ def _as_one(group: Sequence[Note]) -> Sequence[Note]:
 
 def joint_names(names: Sequence[str]) -> str:
     """Names of joints in a sentence: three at most."""
-    if len(names) > MOST_NAMES:
-        return f"{', '.join(names[: MOST_NAMES - 1])} and {len(names) - MOST_NAMES + 1} more"
+    if len(names) > MAX_NAMES:
+        return f"{', '.join(names[: MAX_NAMES - 1])} and {len(names) - MAX_NAMES + 1} more"
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 

@@ -7,7 +7,7 @@ import faying
 from faying.contact.auto import CLOSE, pick
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.models.half_space import HalfSpace
-from faying.contact.stability import COARSE, WHOLE, stability
+from faying.contact.stability import COARSE, FULL, stability
 from faying.contact.two_faces import faces_of
 from faying.errors import InputError
 from faying.surface.scan import Scan
@@ -159,7 +159,7 @@ def test_stability_asks_each_part_as_a_scan_of_its_own():
     z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 7, points=128, side=0.5e-3)
     scan = Scan(heights=z, spacing=(0.5e-3 / 128,) * 2)
     found = stability(faying.Mates(scan, materials=PAIR), model="jk", pressure=1e6)
-    for share, name in ((1.0, WHOLE), (0.5, "half window")):
+    for share, name in ((1.0, FULL), (0.5, "half window")):
         law = faying.law_for(scan=scan.cropped(share), pair=PAIR, model="jk")
         assert found.k_n[name] == pytest.approx(float(law.at_pressure(1e6).k_n), rel=1e-9)
     assert not found.stable

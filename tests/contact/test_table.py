@@ -5,7 +5,7 @@ import pytest
 
 from faying import JK, RIGID, ContactPair, InputError, Material
 from faying.contact import GreenwoodWilliamson, JacksonStreator, MajumdarBhushan, Persson, TabulatedLaw
-from faying.contact.law import MANY, ContactLaw
+from faying.contact.law import TABLE_FROM, ContactLaw
 
 PAIR = ContactPair(Material(name="m", E=200e9, nu=0.3, hardness=994e6, friction=0.25), RIGID)
 SPECIMEN = JK(D=2.39, G=1.53e-10, pair=PAIR, scan_area=16e-6)
@@ -51,9 +51,9 @@ def test_pressures_on_a_kink_are_as_good() -> None:
 
 def test_only_many_pressures_read_the_table() -> None:
     law = SPECIMEN.with_(G=2e-10)
-    few = law.at_pressure(np.full(MANY, 1e6))
+    few = law.at_pressure(np.full(TABLE_FROM, 1e6))
     assert "_pressure_table" not in vars(law)
-    many = law.at_pressure(np.full(MANY + 1, 1e6))
+    many = law.at_pressure(np.full(TABLE_FROM + 1, 1e6))
     assert "_pressure_table" in vars(law)
     assert float(many.k_n[0]) == pytest.approx(float(few.k_n[0]), rel=1e-6)
 

@@ -94,7 +94,7 @@ def test_two_meshes_have_the_same_waves():
         mesh = stacked(counts=counts, kind=kind)
         interface = plates(mesh).joints[0].interface
         axes = FaceAxes.of(mesh, FACES, interface)
-        assert form.laid(axes).lost == 0
+        assert form.laid(axes).missing_share == 0
         gap = form.at(interface.positions, axes, interface.weights)
         exact = form.waviness.on(axes).gap(axes.local(interface.positions), interface.weights)
         assert gap == pytest.approx(exact, abs=1e-18)
@@ -130,10 +130,10 @@ def test_a_mesh_cuts_the_waves_that_it_does_not_carry():
     columns = np.column_stack([*columns, *total])
     rest = gap - columns @ np.linalg.lstsq(columns, gap, rcond=None)[0]
     assert np.abs(rest).max() < 1e-9 * gap.max()
-    assert 0 < laid.lost < 1
-    assert "waves longer than 26.67 mm (4 nodes of the coarser face in a wave)" in laid.cut()
+    assert 0 < laid.missing_share < 1
+    assert "waves longer than 26.67 mm (4 nodes of the coarser face in a wave)" in laid.mesh_limit()
     fine = LaidWaves.of(waviness, replace(axes, spacing=1e-3))
-    assert fine.lost == 0
+    assert fine.missing_share == 0
 
 
 def test_long_waves_stay_where_the_shortest_changes():

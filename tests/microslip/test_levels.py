@@ -26,7 +26,7 @@ def leveled(model):
 @pytest.mark.parametrize("level", [0.05, 1.0, 3.0, 10.0])
 def test_one_mass_has_the_exact_integral_of_the_hysteresis(stiffness, limits, level, monkeypatch):
     monkeypatch.setattr(levels, "SAMPLES", 512)
-    monkeypatch.setattr(levels, "SETTLED", 1e-6)
+    monkeypatch.setattr(levels, "TOLERANCE", 1e-6)
     monkeypatch.setattr(levels, "PASSES", 40)
     monkeypatch.setattr(levels, "HARMONICS", 1)
     found = leveled(oscillator(slider(stiffness, limits))).at([level], 1)

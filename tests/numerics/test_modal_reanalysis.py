@@ -60,7 +60,7 @@ def test_another_factorisation_on_the_way_changes_nothing_but_the_rounds():
     changed = chain(1e8)[0]
     with pytest.raises(NotConverged, match="changed springs"):
         near.under(changed, 6, tolerance=1e-12, rounds=1)
-    near.take(factorise((changed + modes.shift * M).tocsr()), changed)
+    near.adopt_factor(factorise((changed + modes.shift * M).tocsr()), changed)
     found = near.under(changed, 6, tolerance=1e-12, rounds=4)
     wanted = lowest_modes(changed, M, 7, shift_frequency=5.0)
     assert found.frequencies[1:] == pytest.approx(wanted.frequencies[1:], rel=1e-11)

@@ -22,7 +22,7 @@ from faying.units import load_text
 STIFF = 1e3  # times the stiffness of the parts over their size: what counts as bonded
 STIFFER = 1e4  # and at least so many times the law's own
 MATTERS = 5e-3  # relative difference of a frequency from which the law has no answer
-LEAST = 1e-4  # relative change of a frequency that is printed
+MIN_PRINTED_CHANGE = 1e-4  # relative change of a frequency that is printed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,12 +35,12 @@ class AboveRange:
 
 
 def bonded_above_range(
-    case: Case, load: float, springs: Sequence[Springs[Interface]], held: DampedModes
+    case: Case, load: float, springs: Sequence[Springs[Interface]], at_end: DampedModes
 ) -> AboveRange | None:
     """Solve a case under one preload with the points beyond the end of their law bonded, at no loss there.
 
-    Stiffness grows with pressure in every law, so the frequencies lie between those with the stiffness held at the
-    law's end, `held`, and these; modes count in rising order. None where no point is beyond.
+    Stiffness grows with pressure in every law, so the frequencies lie between those with the stiffness kept at the
+    law's end, `at_end`, and these; modes count in rising order. None where no point is beyond.
     """
     structure, study = case.structure, case.study
     past = [joint.above_range(s) for joint, s in zip(structure.joints, springs, strict=True)]
@@ -60,7 +60,7 @@ def bonded_above_range(
         kind=study.modes.damping,
         tolerance=EXACT,
     )
-    notes = _notes(case, load, springs, past, found.frequencies / held.frequencies - 1)
+    notes = _notes(case, load, springs, past, found.frequencies / at_end.frequencies - 1)
     return AboveRange(frequencies=found.frequencies, loss_factors=found.loss_factors, notes=notes)
 
 
@@ -87,7 +87,7 @@ def _notes(
 ) -> tuple[Note, ...]:
     kilo = load_text(load)
     worst = int(np.argmax(np.abs(change)))
-    shown = abs(change[worst]) >= LEAST
+    shown = abs(change[worst]) >= MIN_PRINTED_CHANGE
     out = []
     for number, (joint, s, mask) in enumerate(zip(case.structure.joints, springs, past, strict=True)):
         if not np.any(mask):
@@ -96,7 +96,11 @@ def _notes(
         share = float(weights @ mask / weights.sum())
         where = f"{joint.name}, {kilo}: on {percent(share)} of the joint the pressure exceeds the "
         where += f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends with this surface"
-        effect = f"moves mode {worst + 1} most, by {change[worst]:+.2%}" if shown else f"moves no mode by {LEAST:.2%}"
+        effect = (
+            f"moves mode {worst + 1} most, by {change[worst]:+.2%}"
+            if shown
+            else f"moves no mode by {MIN_PRINTED_CHANGE:.2%}"
+        )
         text = f"{where}; stiffness stays constant there; bonding these points instead {effect}"
         out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
         strong = np.flatnonzero(np.abs(change) > MATTERS)

@@ -15,7 +15,7 @@ from faying.numerics.solve import Released
 from faying.study.keys.alternative import AlternativeChoice
 from faying.study.study import Study
 
-TOLD = ("open", "beyond-law", "outside-validity", "law-choice", "assumed")  # notes of the other law that are told
+KEPT_NOTES = ("open", "beyond-law", "outside-validity", "law-choice", "assumed")  # notes of the other law that are told
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,12 +50,12 @@ def solve_alternative(case: Case, choice: AlternativeChoice, engine: Engine, pro
         text = f"{OF_ALTERNATIVE}{choice.name}: no answer: {fault}"
         return Alternative(name=choice.name, case=None, states=(), notes=(Note(code="alternative", text=text),))
     notes = [*law_reasons(other.structure, other.surfaces), *(note for state in states for note in state.notes)]
-    told = tuple(
+    other_notes = tuple(
         replace(note, text=f"{OF_ALTERNATIVE}{choice.name}: {note.text}")
         for note in notes
-        if note.code in TOLD and note not in case.notes
+        if note.code in KEPT_NOTES and note not in case.notes
     )
-    return Alternative(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(told)))
+    return Alternative(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(other_notes)))
 
 
 def _slim(state: LoadedCase) -> LoadedCase:

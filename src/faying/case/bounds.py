@@ -26,8 +26,8 @@ def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
     """
     structure = case.structure
     free = modes_with(case.modal, *structure.dynamic_matrices, rigid=structure.unjoined_motions())
-    still = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
-    return still[_elastic(case)], *_bonded(case)
+    frequencies = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
+    return frequencies[_elastic(case)], *_bonded(case)
 
 
 def _elastic(case: Case) -> slice:

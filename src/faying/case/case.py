@@ -31,7 +31,7 @@ from faying.typing import Array
 from faying.units import show
 
 SIZES = 3e-3, 30.0  # m: a structure smaller or larger than these is noted, for its unit may be wrong
-SEEN = 1e-6  # of snap: less is rounding
+SNAP_ROUNDING = 1e-6  # of snap: less is rounding
 Read = Mapping[SurfaceChoice, Surface]  # surfaces by what they were read from
 
 
@@ -149,9 +149,9 @@ def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Not
 
 def mates_notes(laws: Sequence[JointLaw], *, alike: bool = False) -> list[Note]:
     """Both faces of each joint and their materials, each once; alike: whether the other face was assumed so."""
-    said = dict.fromkeys(law.mates for law in laws if law.mates)
+    lines = dict.fromkeys(law.mates for law in laws if law.mates)
     hint = "; the other face is assumed alike: surface.counter gives its own scan" if alike else ""
-    return [Note(code="mates", text=line + hint) for line in said]
+    return [Note(code="mates", text=line + hint) for line in lines]
 
 
 def read_for(study: Study, surfaces: Sequence[Surface]) -> Read:
@@ -235,13 +235,13 @@ def name_faults(
     faces: the part of each; one_body: pairs of parts that share nodes in the file.
     """
     file = study.geometry.file.name
-    held = ", ".join(parts)
+    names = ", ".join(parts)
     unsaid = [name for name in parts if name not in study.parts]
     faults = [("part", f"[part] has no entry for {name!r}, which is in {file}") for name in unsaid]
     absent = [name for name in study.parts if name not in parts]
-    faults += [(f"part.{name}", f"part {name!r} is not in {file}; it has {held}") for name in absent]
+    faults += [(f"part.{name}", f"part {name!r} is not in {file}; it has {names}") for name in absent]
     faults += [
-        (f"bolt[{k}].part", f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {file}; it has {held}")
+        (f"bolt[{k}].part", f"bolt {bolt.name!r} is the part {bolt.part!r}, which is not in {file}; it has {names}")
         for k, bolt in enumerate(study.bolts, 1)
         if bolt.part is not None and bolt.part not in parts
     ]
@@ -378,7 +378,7 @@ def interface_of(study: Study, mesh: Mesh, joint: JointChoice, surface: Surface)
 def snapped(interface: Interface, snap: float, name: str) -> tuple[Interface, list[Note]]:
     """Close a gap of the CAD model that is nowhere wider than snap [m]; a note says how wide it was."""
     widest = float(np.abs(interface.gap).max())
-    if not SEEN * snap < widest <= snap:
+    if not SNAP_ROUNDING * snap < widest <= snap:
         return interface, []
     text = f"{name}: the faces are up to {show(widest, 'm')} apart; geometry.snap = {show(snap, 'm')} closes that"
     return replace(interface, gap=np.zeros_like(interface.gap)), [Note(code="snapped", joint=name, text=text)]

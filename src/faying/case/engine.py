@@ -75,7 +75,7 @@ class Direct:
         modes, stiffness = self._modes(springs)
         self._shapes = modes.shapes
         check_motions(structure, modes)
-        loss = structure.lost(springs, viscous=choice.damping == "viscous")
+        loss = structure.joint_loss(springs, viscous=choice.damping == "viscous")
         damped = damped_modes(
             modes,
             stiffness,

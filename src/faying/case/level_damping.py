@@ -19,9 +19,10 @@ FRICTION = (0.03, 0.12, 0.5)
 # damping ratio at rest of bolted structures of which nothing is measured: measured are 0.034 and 0.087 % on the
 # Brake-Reuss beam, 0.10 and 0.13 % on another of its kind by ring-down
 REST = (3e-4, 1e-3, 3e-3)
-MORE_MODES = 150  # of the basis, beyond those asked for, in which a mode is found again
+EXTRA_MODES = 150  # of the basis, beyond those asked for, in which a mode is found again
 SLIGHT = 0.1  # of the spread at rest: slip below it moves the low end by 0.005 of that spread, whatever friction is
-FEW_SPRINGS = 12  # into which a law is cut for the ends of friction: they differ by factors, this changes a hundredth
+# into which a law is cut for the ends of friction: they differ by factors, this changes a hundredth
+SPRINGS_AT_ENDS = 12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +69,7 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Ar
         model = level_model(structure, preload, basis, [FRICTION[1] if mu is None else mu for mu in given])
     except InputError:
         return None
-    model = model.lowest(min(basis.shape[1], case.rigid_count + choice.count + MORE_MODES))
+    model = model.lowest(min(basis.shape[1], case.rigid_count + choice.count + EXTRA_MODES))
     middle = model.at(choice.levels, choice.count)
     rest = (found.damped.loss_factors / 2,) * 3 if structure.predicts_loss else REST
     # a loss at rest moves the complex modes as well
@@ -94,7 +95,7 @@ def _with_friction(model: LevelModel, case: Case, preload: PreloadState, frictio
     """The same with another friction at the joints of which nothing is said, and laws cut into fewer springs."""
     structure = case.structure
     given = [friction if joint.friction is None else joint.friction for joint in structure.joints]
-    laws = cut_laws(structure, preload, given, FEW_SPRINGS)
+    laws = cut_laws(structure, preload, given, SPRINGS_AT_ENDS)
     joints = tuple(replace(joint, law=law) for joint, law in zip(model.slip.joints, laws, strict=True))
     changed = replace(model, slip=replace(model.slip, joints=joints))
     return changed.at(case.study.modes.levels, case.study.modes.count)

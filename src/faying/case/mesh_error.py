@@ -22,7 +22,7 @@ from faying.units import show
 # where it is closed
 OF_HALVES = 0.5
 RATE = 1.5  # the error falls with this power of the size: between 1.3 of plates and 2.5 of solid parts
-LEAST_SIZE = 0.3  # of the size: a smaller one is not proposed in one step
+MIN_SIZE_RATIO = 0.3  # of the size: a smaller one is not proposed in one step
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,4 +107,4 @@ def mesh_notes(case: Case, found: MeshError | None) -> list[Note]:
 
 def size_for(size: float, error: float, tolerance: float) -> float:
     """Size of elements [m] at which an error falls to a tolerance, in one step."""
-    return size * float(np.clip((tolerance / error) ** (1 / RATE), LEAST_SIZE, 1.0))
+    return size * float(np.clip((tolerance / error) ** (1 / RATE), MIN_SIZE_RATIO, 1.0))

@@ -9,7 +9,7 @@ from faying.errors import InputError
 from faying.fe.mesh import Mesh
 from faying.geometry.face_facts import GeometryFacts
 from faying.geometry.mesh_facts import distance_to
-from faying.joint.attachments import NEAR, nearest_node, too_far
+from faying.joint.attachments import MAX_DISTANCE, nearest_node, too_far
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -44,7 +44,7 @@ def on_structure(what: str, point: Point, where: Mesh | GeometryFacts) -> None:
         return
     at = np.array(point)
     distance = distance_to(at, where.corners)
-    if distance > NEAR * where.size and not _within(at, where.corners):
+    if distance > MAX_DISTANCE * where.size and not _within(at, where.corners):
         ends = where.corners.reshape(-1, 3)
         raise InputError(too_far(what, point, distance, ends.min(axis=0), ends.max(axis=0)))
 

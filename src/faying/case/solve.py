@@ -75,12 +75,12 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     nothing, NotConverged where the preload stops short.
     """
     study, structure = case.study, case.structure
-    asked = study.preloads[number]
-    load = asked.preload
-    progress.begin(f"preload {asked.name}")
+    preload_case = study.preloads[number]
+    load = preload_case.preload
+    progress.begin(f"preload {preload_case.name}")
     preload = engine.preload(number)
     springs = structure.springs(preload.pressures)
-    progress.begin(f"modes at {asked.name}")
+    progress.begin(f"modes at {preload_case.name}")
     found = engine.vibrate(springs)
     modes, damped = found.modes, found.damped
     loaded = LoadedStructure(
@@ -147,8 +147,8 @@ def _responses(
 
 def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> float:
     """Share of the area of all joints where a mask of its points holds [-]."""
-    held = sum(float(s.interface.weights @ mask) for s, mask in zip(springs, masks, strict=True))
-    return held / sum(s.interface.area for s in springs)
+    area = sum(float(s.interface.weights @ mask) for s, mask in zip(springs, masks, strict=True))
+    return area / sum(s.interface.area for s in springs)
 
 
 def _outside(structure: Structure, springs: Sequence[Springs[Interface]]) -> float:

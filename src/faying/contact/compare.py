@@ -71,13 +71,13 @@ def compare(
 
 def _covered(law: ContactLaw, pressure: Array) -> Response:
     """Response with NaN where the law does not reach."""
-    beyond = pressure > law.greatest_pressure * (1 + 1e-9)
+    above_range = pressure > law.greatest_pressure * (1 + 1e-9)
     below = pressure < law.least_pressure * (1 - 1e-9)
     at = law.at_pressure(np.clip(pressure, law.least_pressure, law.greatest_pressure))
-    out = beyond | below
+    out = above_range | below
     arrays = {name: np.where(out, np.nan, value) for name, value in at.quantities().items()}
     arrays["pressure"] = pressure.copy()
     reasons = {name: mask & ~out for name, mask in at.reasons.items()}
-    reasons["pressure above what the law covers"] = beyond
+    reasons["pressure above what the law covers"] = above_range
     reasons["pressure below what the law resolves"] = below
     return Response(reasons=reasons, **arrays)

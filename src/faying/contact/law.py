@@ -27,7 +27,7 @@ __all__ = ["ContactLaw", "Parameter", "Response", "checked", "require"]
 
 TABLE_POINTS = 500
 # from this many pressures on, at_pressure reads the checked table unless asked to be exact
-MANY = 20_000
+TABLE_FROM = 20_000
 
 
 def require(law: str, good: bool, text: str) -> None:
@@ -289,7 +289,7 @@ class ContactLaw(Summary, ABC):
                 f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint"
             )
         flat = p.ravel()
-        read = self._pressure_table.at if exact is False or (exact is None and p.size > MANY) else self._exact
+        read = self._pressure_table.at if exact is False or (exact is None and p.size > TABLE_FROM) else self._exact
         open_points = flat == 0
         if not open_points.any():
             return read(flat).reshaped(p.shape)

@@ -22,17 +22,18 @@ from faying.halfspace.solve import halved_map
 from faying.typing import Array
 
 STRIDE = 4  # a large map itself is solved at every fourth pressure first
-CLOSE = 0.015  # miss of a predicted closing, over what a threefold pressure closes, at which no pressure is added
-CLOSE_ALONE = 0.01  # the same of a map whose curve no coarser map carries
+MAX_MISS = 0.015  # miss of a predicted closing, over what a threefold pressure closes, at which no pressure is added
+MAX_MISS_ALONE = 0.01  # the same of a map whose curve no coarser map carries
 SHAPE = 600  # points a side from which on the map on a quarter of them may carry the shape of the curves
-FINEST = 1.08  # least factor between two pressures
+MIN_PRESSURE_RATIO = 1.08  # least factor between two pressures
 COLUMNS = 8, 60  # pressures at which the map itself may be solved: at least and at most, and between them
 MAX_POINTS = 3e6  # as many as make this number of points together
 EDGES = 6  # the quarters of the window are solved at every sixth pressure
 GROWTH = 2.5  # four times the points each way are two doublings; a quarter on top of what the last ones changed
-MOST = log(1e3)  # a range wider than this says no more: next to full contact the stiffness of a map has no limit
+# a range wider than this says no more: next to full contact the stiffness of a map has no limit
+MAX_LOG_RANGE = log(1e3)
 ALIKE = 0.75  # correlation; an odd number of rows leaves half of what the next row differs by
-FEWEST_CELLS = 16  # on the side of a quarter of the window
+MIN_CELLS = 16  # on the side of a quarter of the window
 HARDNESS_DOUBT = 1.35  # factor either way: scatter of Brinell hardness of one steel, and of small indentations
 STORED = 6  # version of what the cache holds
 
@@ -92,12 +93,12 @@ class PressureSeries:
     def least_factor(self, *, loading: bool) -> Array:
         """Lower end of the range of k_n over k_n [-] (n,), of one of its two branches."""
         change, other = self._error(loading)
-        return np.asarray(np.exp(-np.minimum(change + other, MOST)))
+        return np.asarray(np.exp(-np.minimum(change + other, MAX_LOG_RANGE)))
 
     def greatest_factor(self, *, loading: bool) -> Array:
         """Upper end of the range of k_n over k_n [-] (n,): four times the points each way, at the larger rate seen."""
         change, other = self._error(loading)
-        return np.asarray(np.exp(np.minimum(GROWTH * change + other, MOST)))
+        return np.asarray(np.exp(np.minimum(GROWTH * change + other, MAX_LOG_RANGE)))
 
 
 def solve_series(
@@ -225,12 +226,12 @@ class _Levels:
             self.alone = sum(self._miss(*three) for three in triples) < carried
         many, few = COLUMNS[1], COLUMNS[0]
         most = many if self.alone else min(max(int(MAX_POINTS / self.heights.size), few), many)
-        close = CLOSE_ALONE if self.alone else CLOSE
+        close = MAX_MISS_ALONE if self.alone else MAX_MISS
         waiting: list[tuple[float, float, float]] = []
         seen: set[tuple[float, float]] = set()
 
         def split(a: float, b: float, miss: float) -> None:
-            if miss > close and b / a > FINEST**2 and (a, b) not in seen:
+            if miss > close and b / a > MIN_PRESSURE_RATIO**2 and (a, b) not in seen:
                 seen.add((a, b))
                 heappush(waiting, (-miss, a, b))
 
@@ -397,7 +398,7 @@ def is_twofold(heights: Array) -> bool:
 def quarters(heights: Array, spacing: tuple[float, float]) -> list[tuple[Array, tuple[float, float]]]:
     """The four quarters of a map, each levelled, two beside each other first; none if below 16 points a side."""
     rows, columns = (n // 2 for n in heights.shape)
-    if min(rows, columns) < FEWEST_CELLS:
+    if min(rows, columns) < MIN_CELLS:
         return []
     out = []
     y, x = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-1, 1, columns), indexing="ij")

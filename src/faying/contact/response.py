@@ -28,7 +28,7 @@ UNITS = {
 }
 
 # A loop of force over motion fills at most its box, 4 F x; a spring to its corner stores F x/2.
-MOST_LOSS = 4 / pi
+MAX_LOSS = 4 / pi
 TOO_LOSSY = "loss factor above 4/pi, which no loop of force over motion has"
 
 
@@ -61,8 +61,8 @@ class Response(Summary):
     def __post_init__(self) -> None:
         losses = [np.asarray(loss) for loss in (self.loss_n, self.loss_t) if loss is not None]
         if losses:
-            beyond = np.any([loss > MOST_LOSS for loss in losses], axis=0)
-            object.__setattr__(self, "reasons", {**self.reasons, TOO_LOSSY: np.asarray(beyond)})
+            lossy = np.any([loss > MAX_LOSS for loss in losses], axis=0)
+            object.__setattr__(self, "reasons", {**self.reasons, TOO_LOSSY: np.asarray(lossy)})
 
     @property
     def valid(self) -> Mask:

@@ -20,8 +20,8 @@ from faying.surface.scan import Profile, Scan
 
 UNSTABLE = 0.25  # a greater relative change of k_n is told
 CUTS = {"half window": 0.5, "quarter window": 0.25}
-WHOLE, COARSE = "full scan", "half the points"
-CASES = (WHOLE, *CUTS, COARSE)
+FULL, COARSE = "full scan", "half the points"
+CASES = (FULL, *CUTS, COARSE)
 
 
 @final
@@ -43,13 +43,13 @@ class Stability:
     @property
     def factors(self) -> dict[str, float]:
         """k_n over that of the full scan [-]."""
-        return {name: value / self.k_n[WHOLE] for name, value in self.k_n.items()}
+        return {name: value / self.k_n[FULL] for name, value in self.k_n.items()}
 
     @property
     def worst(self) -> tuple[str, float]:
         """The part of the scan that moves k_n most, and its factor [-]; the whole and 1 where nothing was answered."""
         moved = {name: f for name, f in self.factors.items() if np.isfinite(f) and f > 0}
-        return max(moved.items(), key=lambda item: abs(log(item[1])), default=(WHOLE, 1.0))
+        return max(moved.items(), key=lambda item: abs(log(item[1])), default=(FULL, 1.0))
 
     @property
     def stable(self) -> bool:
@@ -80,7 +80,7 @@ def stability(
         InputError: for unknown laws, and where the law has no answer on the full scan.
     """
     law = mates.choose(model, given).law
-    values = {WHOLE: stiffness_at(law, pressure)}
+    values = {FULL: stiffness_at(law, pressure)}
     for name in CASES[1:]:
         try:
             values[name] = stiffness_at(_part(mates, name).choose(law.name, given).law, pressure)

@@ -18,7 +18,7 @@ from faying.surface.scan import Profile, Scan, usable
 from faying.typing import Array
 from faying.units import show
 
-LEAST_G = 1e-300  # m
+MIN_G = 1e-300  # m
 Counter = Scan | str  # the other face: its scan, "same" or "smooth"
 COUNTERS = ("same", "smooth")
 GIVEN = "as given"
@@ -187,7 +187,7 @@ def together(G: float, D: float, factor: float = 2.0) -> float:
         G of both: spectral densities add, and G^(2 D - 4) goes with them. Near D = 2 a fitted G underflows; it is at
         least 1e-300.
     """
-    return float(max(G * factor ** (1 / (2 * D - 4)), LEAST_G))
+    return float(max(G * factor ** (1 / (2 * D - 4)), MIN_G))
 
 
 def faces_of(scan: Scan | Profile, counter: Counter = "same", **options: Any) -> RoughPair:

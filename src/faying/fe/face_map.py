@@ -83,14 +83,14 @@ def projection(points: Array, triangles: Index, places: Array, weights: Array) -
     # corners that no point lies near: the mean of their neighbours, from the rim inwards
     edges, _, _ = edges_of(triangles)
     both = np.concatenate([edges, edges[:, ::-1]])
-    beside = csr_array((np.ones(len(both)), (both[:, 0], both[:, 1])), shape=(len(points), len(points)))
+    neighbours = csr_array((np.ones(len(both)), (both[:, 0], both[:, 1])), shape=(len(points), len(points)))
     known = sums > 0
     while not np.all(known):
-        reached = np.asarray(beside @ known.astype(float)).ravel()
+        reached = np.asarray(neighbours @ known.astype(float)).ravel()
         new = ~known & (reached > 0)
         if not np.any(new):
             break
-        fill = diags_array(new / np.where(reached > 0, reached, 1.0)) @ beside @ diags_array(known.astype(float))
+        fill = diags_array(new / np.where(reached > 0, reached, 1.0)) @ neighbours @ diags_array(known.astype(float))
         mean, known = mean + fill @ mean, known | new
     return mean
 

@@ -18,7 +18,7 @@ ELEVATION, AZIMUTH = 12, -62  # deg: where a structure is looked at from
 LIGHT = np.array([0.35, -0.8, 0.48])  # direction towards the light
 BARE = "0.82"  # colour of what has no name
 DEFORMED = 0.06  # greatest motion of a mode shape as it is drawn, of the size of the structure
-MOST_COLOURS = 8  # faces with a colour of their own
+MAX_COLOURS = 8  # faces with a colour of their own
 
 
 def axes_in_space(ax: "Axes | None", *, width: float = COLUMN, height: float = 3.2) -> Any:
@@ -66,7 +66,7 @@ def draw_shape(ax: Any, points: Array, triangles: Index, shape: Array) -> Any:
     return framed_in_space(ax, 1e3 * moved)
 
 
-def seen(points: Array) -> tuple[Array, Array]:
+def projected_view(points: Array) -> tuple[Array, Array]:
     """Points (n, 3) as they are looked at: places on paper (n, 2), right and up, and nearness to the eye (n,)."""
     up, side = np.radians(ELEVATION), np.radians(AZIMUTH)
     eye = np.array([np.cos(up) * np.cos(side), np.cos(up) * np.sin(side), np.sin(up)])
@@ -85,7 +85,7 @@ def draw_flat(ax: Any, points: Array, triangles: Index, colours: Array) -> None:
     """Draw a closed surface of triangles (t, 3) as seen from the eye on flat axes; colours: RGBA (t, 4), lit here."""
     from matplotlib.collections import PolyCollection
 
-    flat, near = seen(points)
+    flat, near = projected_view(points)
     up, side = np.radians(ELEVATION), np.radians(AZIMUTH)
     eye = np.array([np.cos(up) * np.cos(side), np.cos(up) * np.sin(side), np.sin(up)])
     faces = normals(points, triangles)
@@ -130,7 +130,7 @@ def moved_by(points: Array, shape: Array) -> tuple[Array, Array]:
 
 def frame_of(surfaces: Sequence[Array]) -> Array:
     """Corners (2, 2) of the smallest frame that holds these points as they are looked at."""
-    flat = np.concatenate([seen(points)[0] for points in surfaces])
+    flat = np.concatenate([projected_view(points)[0] for points in surfaces])
     low, high = flat.min(axis=0), flat.max(axis=0)
     room = 0.01 * float((high - low).max())
     return np.stack([low - room, high + room])
@@ -168,7 +168,7 @@ def mesh_axes(mesh: Mesh, ax: "Axes | None" = None) -> "Axes":
     ax = axes_in_space(ax)
     outer = outline(mesh)
     sizes = np.bincount(outer.face_of_triangle[outer.face_of_triangle >= 0], minlength=len(outer.faces))
-    largest = [int(k) for k in np.argsort(-sizes, kind="stable") if sizes[k]][:MOST_COLOURS]
+    largest = [int(k) for k in np.argsort(-sizes, kind="stable") if sizes[k]][:MAX_COLOURS]
     colours = {k: colour(number) for number, k in enumerate(sorted(largest))}
     draw_faces(ax, mesh.points[outer.nodes], outer.triangles, outer.face_of_triangle, colours, alpha=0.45)
     key_of(ax, {outer.faces[k]: colour for k, colour in colours.items()})

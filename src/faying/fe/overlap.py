@@ -85,10 +85,10 @@ def _clip(polygon: Array, count: Index, start: Array, end: Array) -> tuple[Array
     distance -= along[:, None, 1] * (polygon[..., 0] - start[:, None, 0])
     following = np.where(places + 1 < count[:, None], places + 1, 0)
     later = np.take_along_axis(polygon, following[..., None], axis=1)
-    beyond = np.take_along_axis(distance, following, axis=1)
+    following_distance = np.take_along_axis(distance, following, axis=1)
     keep = valid & (distance >= 0)
-    crosses = valid & ((distance >= 0) != (beyond >= 0))
-    share = np.divide(distance, distance - beyond, out=np.zeros_like(distance), where=crosses)
+    crosses = valid & ((distance >= 0) != (following_distance >= 0))
+    share = np.divide(distance, distance - following_distance, out=np.zeros_like(distance), where=crosses)
     both = np.stack([polygon, polygon + share[..., None] * (later - polygon)], axis=2).reshape(p, 2 * v, 2)
     wanted = np.stack([keep, crosses], axis=2).reshape(p, 2 * v)
     order = np.argsort(~wanted, axis=1, kind="stable")[:, : v + 1]

@@ -5,14 +5,14 @@ import numpy as np
 from faying.fe.mesh import least_jacobian
 from faying.typing import Array, Index, Mask
 
-LEAST = 0.01  # least determinant at the points of stiffness and mass over that of the straight element
+MIN_JACOBIAN = 0.01  # least determinant at the points of stiffness and mass over that of the straight element
 EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])  # corners whose middles are nodes 4 to 9
 
 
 def folded(points: Array, cells: Index) -> Mask:
     """Which tetrahedra of ten nodes (e, 10) have a map that folds, or nearly does."""
     straight = least_jacobian(points, cells[:, :4])
-    return np.asarray(least_jacobian(points, cells, of_mass=True) <= LEAST * np.abs(straight))
+    return np.asarray(least_jacobian(points, cells, of_mass=True) <= MIN_JACOBIAN * np.abs(straight))
 
 
 def straightened(points: Array, cells: Index) -> tuple[Array, int, Mask]:

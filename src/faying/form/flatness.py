@@ -8,7 +8,7 @@ from faying.errors import InputError
 from faying.misuse import checked_call, numbers
 from faying.typing import Array
 
-FEW = 30  # points that the first linear program takes; those that stick out most join it
+FIRST_POINTS = 30  # points that the first linear program takes; those that stick out most join it
 ROUNDS = 200
 INSIDE = 1e-9  # of the flatness, by which a point may stick out
 
@@ -71,7 +71,7 @@ def minimum_zone(places: Array, heights: Array) -> MinimumZone:
         return MinimumZone(flatness=0.0, plane=_plane(fit, centre, size))
     rest = rest / scale
     order = np.argsort(rest)
-    chosen = set(order[:FEW].tolist()) | set(order[-FEW:].tolist())
+    chosen = set(order[:FIRST_POINTS].tolist()) | set(order[-FIRST_POINTS:].tolist())
     for _ in range(ROUNDS):
         index = np.array(sorted(chosen))
         rows = base[index]
@@ -81,7 +81,7 @@ def minimum_zone(places: Array, heights: Array) -> MinimumZone:
             [0, 0, 0, 1], A_ub=limits, b_ub=np.concatenate([rest[index], -rest[index]]), bounds=(None, None)
         )
         out = np.abs(rest - base @ found.x[:3])
-        worst = np.argsort(-out)[:FEW]
+        worst = np.argsort(-out)[:FIRST_POINTS]
         more = {int(i) for i in worst if out[i] > found.x[3] * (1 + INSIDE)} - chosen
         if not more:
             break

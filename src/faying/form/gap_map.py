@@ -16,7 +16,7 @@ from faying.style import Summary
 from faying.typing import Array
 
 LISTS = (".csv", ".txt", ".dat", ".xyz", ".asc")  # endings of lists of points; all else is a scan
-MOST = 150  # places kept along each side of a scan: roughness is the law's, and is averaged out of the form
+MAX_PLACES = 150  # places kept along each side of a scan: roughness is the law's, and is averaged out of the form
 
 
 def _summary(name: str, places: Array, what: str, values: Array) -> tuple[str, dict[str, str]]:
@@ -175,7 +175,7 @@ def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None =
 
     A file that ends in one of `LISTS` holds three columns x, y, z, anywhere; a heading may name them in any order and
     state their units, else both are given. Any other is a scan, whose spikes are left out and which is averaged over
-    cells to at most `MOST` places along each side; units are given where it states none. Raises InputError and
+    cells to at most `MAX_PLACES` places along each side; units are given where it states none. Raises InputError and
     ReadError.
     """
     if path.suffix.lower() in LISTS:
@@ -195,7 +195,7 @@ def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None =
 
 def _averaged(scan: Any) -> tuple[Array, Array]:
     """Places (n, 2) and mean heights (n,) of cells of a scan; cells without a known point are left out."""
-    rows, columns = (np.minimum(np.arange(n) * min(n, MOST) // n, MOST - 1) for n in scan.shape)
+    rows, columns = (np.minimum(np.arange(n) * min(n, MAX_PLACES) // n, MAX_PLACES - 1) for n in scan.shape)
     shape = rows[-1] + 1, columns[-1] + 1
     cell = (rows[:, None] * shape[1] + columns[None, :]).ravel()
     values = scan.heights.ravel()

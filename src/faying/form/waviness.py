@@ -224,7 +224,7 @@ class LaidWaves:
         return cls(waves=waviness.on(axes), carried=NODES * axes.spacing)
 
     @property
-    def lost(self) -> float:
+    def missing_share(self) -> float:
         """Share of the variance [-] in waves that the mesh does not carry."""
         return 1.0 - self.waves.share(self.carried)
 
@@ -238,10 +238,10 @@ class LaidWaves:
         w = self.waves
         return f"waves from {show(w.shortest, 'm')} to {show(w.longest, 'm')}, rms {show(w.Wq, 'm')} on each face"
 
-    def cut(self) -> str:
+    def mesh_limit(self) -> str:
         """What the mesh leaves out of the waves, for people."""
         least = show(self.carried, "m")
         return (
             f"the mesh carries waves longer than {least} ({NODES} nodes of the coarser face in a wave); the shorter, "
-            f"{self.lost:.2g} of the variance, are left out. Finer elements on the faces include them"
+            f"{self.missing_share:.2g} of the variance, are left out. Finer elements on the faces include them"
         )

@@ -39,7 +39,7 @@ Start = Callable[[], AnyArray]
 STEPS = 200
 HALVES = (0.5, 0.25, 0.125)
 ROUNDS = ((0.3, 20), (0.3, 10), (0.3, 10))  # root of what the last turn may gain over all; most turns
-FEW = 1e-3  # share of the cells cut off by the projection below which another round is not worth its price
+MIN_PROJECTED = 1e-3  # share of the cells cut off by the projection below which another round is not worth its price
 ROUNDING = 3e-7  # error of a product in single precision, over the largest displacement that it gives
 SAMPLE = 1 << 16
 
@@ -397,7 +397,7 @@ class _Search:
             if energy < least:
                 self._take(x, g)
                 least, self.doubt, doubt, first = energy, self.doubt + doubt, 0.0, None
-            few = cells.size - left.size < FEW * cells.size
+            few = cells.size - left.size < MIN_PROJECTED * cells.size
             cells = left
             if few or left.size < 2:
                 break

@@ -23,8 +23,8 @@ from faying.halfspace.cells import Cells
 from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray, Array
 
-CUT = 1.5  # wave number at which E^-1 ends, over the highest one of the coarse blocks
-LEAST = 1e-3  # what is left of E^-1 there, over what was taken off
+CUTOFF = 1.5  # wave number at which E^-1 ends, over the highest one of the coarse blocks
+FLOOR = 1e-3  # what is left of E^-1 there, over what was taken off
 COARSE = 1e-3  # reduction of the residual of K
 TURNS = 40
 DENSE = 200  # blocks up to which K is made as a matrix
@@ -88,8 +88,8 @@ def _symbol(kernel: Kernel, shape: tuple[int, int]) -> Array:
     qx = 2 * np.pi * np.fft.rfftfreq(shape[1], side[1])[None, :]
     q = np.hypot(qy, qx)
     q[0, 0] = 1.0
-    cut = CUT * np.pi / min(side[0] * kernel.aspect, side[1])
-    E: Array = side[0] * side[1] / (kernel.strength * np.maximum(1 / q - 1 / cut, LEAST / cut))
+    cut = CUTOFF * np.pi / min(side[0] * kernel.aspect, side[1])
+    E: Array = side[0] * side[1] / (kernel.strength * np.maximum(1 / q - 1 / cut, FLOOR / cut))
     E[0, 0] = 0.0
     return E
 

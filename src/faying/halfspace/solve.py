@@ -103,8 +103,8 @@ def _first(start: HalfSpaceContact, shape: tuple[int, int], spacing: tuple[float
     coarse = start.heights.shape
     if coarse == shape:
         return start.traction
-    beside = [abs(m * a - n * b) for m, a, n, b in zip(coarse[::-1], start.spacing, shape[::-1], spacing, strict=True)]
-    if any(m > n for m, n in zip(coarse, shape, strict=True)) or any(np.greater(beside, start.spacing)):
+    misfit = [abs(m * a - n * b) for m, a, n, b in zip(coarse[::-1], start.spacing, shape[::-1], spacing, strict=True)]
+    if any(m > n for m, n in zip(coarse, shape, strict=True)) or any(np.greater(misfit, start.spacing)):
         raise InputError(
             f"start: a contact of shape {coarse}, but the map has shape {shape}; "
             "start from a contact of the same map, of as many points or fewer"

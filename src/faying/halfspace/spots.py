@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 FULL_PASSES = 6  # after these the hardness of a point only falls
 MAX_PASSES = 20
-SETTLED = 1e-2  # change of ln H, weighted by the load, below which it is that of the spots
+HARDNESS_TOLERANCE = 1e-2  # change of ln H, weighted by the load, below which it is that of the spots
 
 
 class SizeLaw(Protocol):
@@ -133,7 +133,7 @@ def solve_with_size(
         plastic = contact.at_hardness | (contact.traction > found)
         load = contact.traction.sum(dtype=float)
         change = float((contact.traction * plastic * np.abs(np.log(found / hardness))).sum() / load) if load else 0.0
-        if change < SETTLED:
+        if change < HARDNESS_TOLERANCE:
             return contact
         hardness = found
     raise NotConverged(

@@ -23,7 +23,7 @@ from faying.numerics.constraint import constrain, free_motions
 from faying.numerics.memory import in_single
 from faying.typing import Array, Index
 
-STILL = 1e-12  # of the greatest stiffness of an unknown: what a motion may ask for that nothing resists
+MIN_RESISTANCE = 1e-12  # of the greatest stiffness of an unknown: what a motion may ask for that nothing resists
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -197,7 +197,7 @@ class AssembledParts:
         small = motions.T @ (stiffness @ motions)
         values, vectors = np.linalg.eigh((small + small.T) / 2)
         size = float(stiffness.diagonal().max())
-        return np.asarray(motions @ vectors[:, values < STILL * size])
+        return np.asarray(motions @ vectors[:, values < MIN_RESISTANCE * size])
 
     @cached_property
     def shift_frequency(self) -> float:

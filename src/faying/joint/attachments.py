@@ -12,7 +12,8 @@ from faying.fe.mesh import Mesh
 from faying.typing import Array, Index
 
 AXES: dict[str, int] = {"x": 0, "y": 1, "z": 2}
-NEAR = 0.02  # of the structure's size: farther from any node than this, a point of the study is taken for a mistake
+# of the structure's size: farther from any node than this, a point of the study is taken for a mistake
+MAX_DISTANCE = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +110,7 @@ def nearest_node(mesh: Mesh, point: tuple[float, float, float], what: str) -> in
     """Index of the node nearest to a point [m]. Raises InputError where none is near."""
     distance = np.linalg.norm(mesh.points - np.array(point), axis=1)
     node = int(np.argmin(distance))
-    if distance[node] > NEAR * mesh.size:
+    if distance[node] > MAX_DISTANCE * mesh.size:
         raise InputError(too_far(what, point, float(distance[node]), mesh.points.min(axis=0), mesh.points.max(axis=0)))
     return node
 

@@ -27,9 +27,9 @@ from faying.typing import Array
 
 ACCURACY = 1e-4  # of the residual of a solution: a compliance is right to its square, what lies in a joint to it
 MESHED = 1e-6  # the same where a bolt is meshed, whose numbers are all of first order
-MOST_STEPS = 2000
+MAX_STEPS = 2000
 ROUND = 0.03  # of the area of a ring between its least and greatest radius: a face that differs by more is none
-BESIDE = 1.5  # outer diameters of the seat within which a joint belongs to a bolt
+SEAT_REACH = 1.5  # outer diameters of the seat within which a joint belongs to a bolt
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +112,7 @@ def _solved(
             modes.factorisation,
             balanced,
             accuracy=MESHED if any(isinstance(f, FittedSolidBolt) for f in structure.fitted_bolts) else ACCURACY,
-            limit=MOST_STEPS,
+            limit=MAX_STEPS,
             like=like,
         )
     except NotConverged:
@@ -182,7 +182,7 @@ def stack_of(structure: Structure, index: int) -> ClampedStack | None:
         i = joint.interface
         distance = np.stack([_beside(bolt, i.positions) for bolt in beams])
         mine = np.argmin(distance, axis=0) == beams.index(fitted)
-        reach = np.inf if seat is None else BESIDE * seat[1]
+        reach = np.inf if seat is None else SEAT_REACH * seat[1]
         depth = (i.positions - fitted.point) @ fitted.axis
         near = mine & (distance[beams.index(fitted)] <= reach)
         near &= (depth > 0) & (depth < fitted.length)

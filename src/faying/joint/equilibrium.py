@@ -24,10 +24,10 @@ Found = TypeVar("Found")
 Steps = Generator[Array, Array, Found]  # yields forces (unknowns,), and is sent displacements near their answer
 
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
-FAR_OFF = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
-SETTLED = 1e-4  # imbalance below which k_t and the limit of friction are kept
+FORCING_TERM = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
+FIX_FRICTION_BELOW = 1e-4  # imbalance below which k_t and the limit of friction are kept
 ALIKE = 1e-9  # relative difference of two loads up to which one is a multiple of the other
-MOST_STEPS = 60  # of Newton
+MAX_NEWTON_STEPS = 60
 STATES = 4  # under multiples of one load, from which the next is extrapolated
 
 
@@ -149,7 +149,7 @@ class Equilibrium(ABC):
         start: Array | None = None,
         shanks: Any | None = None,
         tolerance: float = 1e-10,
-        steps: int = MOST_STEPS,
+        steps: int = MAX_NEWTON_STEPS,
         report: Callable[[str], None] | None = None,
     ) -> PreloadState:
         """Find equilibrium under nodal forces `load` [N] (unknowns,).
@@ -415,10 +415,11 @@ class Newton:
                     f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps"
                 )
             # as exact as Newton's own convergence asks, and no more than the tolerance does
-            accuracy = max(min(FAR_OFF, 0.1 * self.size), 0.3 * tolerance / self.size)
+            accuracy = max(min(FORCING_TERM, 0.1 * self.size), 0.3 * tolerance / self.size)
             step, count = yield from balance._direction(u, force, slip_states, accuracy=accuracy)
             u = balance._line_search(u, step, load, slip_states)
-            if self.size > SETTLED:  # far off, k_t follows at once; near the end it is kept so that Newton converges
+            # far off, k_t follows at once; near the end it is kept so that Newton converges
+            if self.size > FIX_FRICTION_BELOW:
                 slip_states = balance._stick_slip(u)
             self.steps, self.inner = self.steps + 1, self.inner + count
             if self.report:

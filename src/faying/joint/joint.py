@@ -21,7 +21,7 @@ from faying.notes import Note
 from faying.typing import Array, Mask
 from faying.units import positive
 
-MOST_TANGENTIAL = 2.0  # greatest k_t/k_n [-]
+MAX_TANGENTIAL = 2.0  # greatest k_t/k_n [-]
 SAME_MODULUS = 0.02  # relative difference of E* from which the materials of a law are not those of the parts
 
 
@@ -72,7 +72,7 @@ class Joint:
         called = f"joint {name!r}" if name else "joint"
         if faces[0] == faces[1]:
             raise InputError(f"{called}: both faces are {faces[0]!r}; name two faces, on two parts")
-        if isinstance(tangential, int | float) and not 0 < tangential <= MOST_TANGENTIAL:
+        if isinstance(tangential, int | float) and not 0 < tangential <= MAX_TANGENTIAL:
             raise InputError(
                 f'{called}: tangential = {tangential!r} should be "law", "mindlin", or k_t/k_n, above 0 and at most 2; '
                 "for example 0.4"
@@ -256,4 +256,6 @@ def wave_notes(name: str, waviness: Waviness, axes: FaceAxes) -> list[Note]:
     text = f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw gives other frequencies. "
     text += f"faying sweep over joint.{name}.form.waviness_seed, or faying predict, says how far draws differ"
     notes = [Note(code="waves", joint=name, text=text)]
-    return notes if laid.lost <= 0 else [*notes, Note(code="waves-mesh", joint=name, text=f"{name}: {laid.cut()}")]
+    if laid.missing_share > 0:
+        notes.append(Note(code="waves-mesh", joint=name, text=f"{name}: {laid.mesh_limit()}"))
+    return notes

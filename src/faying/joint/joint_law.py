@@ -15,9 +15,9 @@ from faying.joint.pressure_curve import PressureCurve, cells, equal_steps, fade
 from faying.joint.springs import Motion, Springs
 from faying.typing import Array, Index
 
-FEW = 200  # pressures that take no longer to invert than a table to make
-LEAST_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
-LEAST_SHARE = 0.01  # of a joint's stiffness, worth at most half of that in a frequency: less is not said
+DIRECT_PRESSURES = 200  # pressures that take no longer to invert than a table to make
+MIN_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
+MIN_SHARE = 0.01  # of a joint's stiffness, worth at most half of that in a frequency: less is not said
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +51,7 @@ class JointLaw:
     end: Literal["low", "high"] | None = None
     reason: str = ""
     mates: str = ""
-    few: int = FEW
+    few: int = DIRECT_PRESSURES
     _unscaled: "JointLaw | None" = field(default=None, repr=False, compare=False)  # the same law, with tables to share
 
     def scaled(self, factor: float) -> Self:
@@ -92,7 +92,7 @@ class JointLaw:
     @property
     def least_pressure(self) -> float:
         """Below it the joint carries nothing that matters [Pa]: p(approach) and the stiffness go on as powers."""
-        return max(LEAST_PRESSURE, 1.001 * self.model.least_pressure)
+        return max(MIN_PRESSURE, 1.001 * self.model.least_pressure)
 
     @cached_property
     def _grid(self) -> Array:
@@ -189,7 +189,7 @@ class JointLaw:
         total = float(stiffness.sum())
         reasons = self.answer(pressure).reasons.items() if total > 0 else ()
         shares = {reason: float(stiffness @ mask) / total for reason, mask in reasons}
-        return {reason: round(share, 6) for reason, share in shares.items() if share >= LEAST_SHARE}
+        return {reason: round(share, 6) for reason, share in shares.items() if share >= MIN_SHARE}
 
     def _within(self, pressure: Array) -> Array:
         """Pressures brought within the law; 0 stays 0."""

@@ -7,7 +7,7 @@ from faying.joint.structure import Structure
 from faying.numerics.solve import BY_PARTS, MPI
 
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
-MOST_MODES = 10_000
+MAX_MODES = 10_000
 SOLVERS = ("pardiso", BY_PARTS, "mumps", "cholmod", "superlu", MPI)
 
 

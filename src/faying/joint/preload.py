@@ -15,7 +15,7 @@ from faying.errors import InputError, NotConverged
 from faying.fe.interface import Motion
 from faying.fe.vertices import VertexRestriction
 from faying.joint.equilibrium import (
-    MOST_STEPS,
+    MAX_NEWTON_STEPS,
     Equilibrium,
     Newton,
     PreloadState,
@@ -139,23 +139,23 @@ class PreloadProblem(Equilibrium):
         found: list[PreloadState | None] = [None] * len(runs)
         answers: dict[int, Array | None] = dict.fromkeys([first, *range(len(runs))])
         while answers:
-            asked = {}
+            requests = {}
             for k, answer in answers.items():
                 try:
-                    asked[k] = next(runs[k]) if answer is None else runs[k].send(answer)
+                    requests[k] = next(runs[k]) if answer is None else runs[k].send(answer)
                 except StopIteration as end:
                     found[k] = end.value
                 except NotConverged:
                     pass
-            columns = self._near(np.stack(list(asked.values()), axis=1)) if asked else np.empty((0, 0))
-            answers = dict(zip(asked, map(np.ascontiguousarray, columns.T), strict=True))
+            columns = self._near(np.stack(list(requests.values()), axis=1)) if requests else np.empty((0, 0))
+            answers = dict(zip(requests, map(np.ascontiguousarray, columns.T), strict=True))
         return found
 
     def _solve_steps(self, load: Array, guess: Guess, tolerance: float) -> Steps[PreloadState]:
         """From a guess of the joints to equilibrium under a load, with the factorisation as it is."""
         start = yield from self._initial_guess(load, guess)
         newton = Newton(self, load, tolerance, None)
-        u, slip_states = yield from newton.run(start, MOST_STEPS)
+        u, slip_states = yield from newton.run(start, MAX_NEWTON_STEPS)
         return self._preload_state(newton, u, slip_states)
 
     def _start(self, load: Array) -> Array:

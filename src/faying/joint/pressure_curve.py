@@ -80,7 +80,7 @@ class PressureCurve:
         return self.placed(approach)[:2]
 
     def placed(self, approach: Array) -> tuple[Array, Array, Array, Index]:
-        """`pressure` and its slope, with ln p and the cell of the table that it lies in, the nearest beyond the ends.
+        """`pressure` and its slope, with ln p and the cell of the table that it lies in, the nearest outside the ends.
 
         ln p is that of the last pressure where the faces are apart.
         """
@@ -94,9 +94,9 @@ class PressureCurve:
         value = ((cubic[0] * dx + cubic[1]) * dx + cubic[2]) * dx + cubic[3]
         steep = (3 * cubic[0] * dx + 2 * cubic[1]) * dx + cubic[2]
         end = np.where(x > log_w[-1], slope[-1], slope[0])
-        beyond = x != inside
-        value = value + np.where(beyond, end * (x - inside), 0.0)
-        steep = np.where(beyond, end, steep)
+        outside = x != inside
+        value = value + np.where(outside, end * (x - inside), 0.0)
+        steep = np.where(outside, end, steep)
         p = np.where(shut, np.exp(value), 0.0)
         return p, np.where(shut, p * steep / np.where(shut, approach, 1.0), 0.0), value, cell
 

@@ -9,7 +9,7 @@ from faying.joint.assembled_parts import added
 from faying.joint.modal import SPARE_MODES, ModalProblem
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
-from faying.numerics.changed import UpdatedStiffness, whole
+from faying.numerics.changed import UpdatedStiffness, assembled
 from faying.numerics.constraint import constrain
 from faying.numerics.memory import check_modes
 from faying.numerics.modal_reanalysis import ModalReanalysis, near_factor, refined_modes
@@ -20,8 +20,8 @@ from faying.numerics.solve import Factoriser
 from faying.typing import Array
 
 EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape
-FEW = 6  # rounds of enrichment that cost about what a factorisation and the two rounds after it do
-KEPT, ROOM = 8, 24_000_000  # what the basis keeps: times the modes of one state, or numbers, whichever is more
+MAX_ROUNDS = 6  # rounds of enrichment that cost about what a factorisation and the two rounds after it do
+BASIS_STATES, ROOM = 8, 24_000_000  # what the basis keeps: times the modes of one state, or numbers, whichever is more
 
 
 def modes_of(
@@ -49,7 +49,7 @@ class SharedModes:
 
     def __init__(self) -> None:
         self.near: ModalReanalysis | None = None  # where the modes were found last
-        self._sprung: Any = None  # stiffness [N/m] of the springs in that of its basis
+        self._joint_stiffness: Any = None  # stiffness [N/m] of the springs in that of its basis
 
     def begin(self, problem: ModalProblem, preload: PreloadProblem) -> None:
         """Take the factorisation of a preload where its springs are near to those that it led to, if none is at hand.
@@ -64,8 +64,8 @@ class SharedModes:
             constrain(j.interface.springs(*k), structure.fixed, 0.0)
             for j, k in zip(structure.joints, preload.factorised_springs, strict=True)
         ]
-        sprung = added(None, laid)
-        stiffness, mass = added(structure.dynamic_matrices[0], [sprung]), structure.dynamic_matrices[1]
+        joint_stiffness = added(None, laid)
+        stiffness, mass = added(structure.dynamic_matrices[0], [joint_stiffness]), structure.dynamic_matrices[1]
         check_modes(problem.mode_count, stiffness.shape[0])
         self.near = near_factor(
             factor,
@@ -77,7 +77,7 @@ class SharedModes:
             spare=SPARE_MODES,
             most=_most(problem),
         )
-        self._sprung = sprung
+        self._joint_stiffness = joint_stiffness
 
     def of(
         self,
@@ -92,41 +92,43 @@ class SharedModes:
         tolerance: of the squared frequencies, relative; shapes: False where only these are wanted.
         """
         structure = problem.structure
-        sprung = structure.joint_stiffness(springs)
+        joint_stiffness = structure.joint_stiffness(springs)
         if self.near is not None:
             # the sum with the parts would take longer than the modes where the basis has them
-            stiffness = UpdatedStiffness(before=self.near.span.stiffness, change=sprung - self._sprung)
+            stiffness = UpdatedStiffness(
+                before=self.near.span.stiffness, change=joint_stiffness - self._joint_stiffness
+            )
             try:
                 return self._from_near(problem, stiffness, tolerance, shapes), stiffness
             except NotConverged:
-                self._factorise(problem, whole(stiffness))
+                self._factorise(problem, assembled(stiffness))
             try:
                 return self._from_near(problem, stiffness, tolerance, shapes), stiffness
             except NotConverged:
                 self.near = None  # before the next factorisation: one at a time in memory
-        stiffness, mass = added(structure.dynamic_matrices[0], [sprung]), structure.dynamic_matrices[1]
+        stiffness, mass = added(structure.dynamic_matrices[0], [joint_stiffness]), structure.dynamic_matrices[1]
         modes = modes_with(problem, stiffness, mass, rigid=structure.rigid)
         self.near = ModalReanalysis(modes, stiffness, mass, rigid=problem.rigid_count, most=_most(problem))
-        self._sprung = sprung
+        self._joint_stiffness = joint_stiffness
         return modes, stiffness
 
     def _from_near(self, problem: ModalProblem, stiffness: Any, tolerance: float, shapes: bool) -> Modes:
         assert self.near is not None
         count = problem.choice.count
         spare = problem.mode_count - problem.rigid_count - count
-        return self.near.under(stiffness, count, tolerance=tolerance, spare=spare, rounds=FEW, shapes=shapes)
+        return self.near.under(stiffness, count, tolerance=tolerance, spare=spare, rounds=MAX_ROUNDS, shapes=shapes)
 
     def _factorise(self, problem: ModalProblem, stiffness: Any) -> None:
         """Factorise a stiffness [N/m] that the factorisation at hand is far from; the basis stays."""
         assert self.near is not None
         matrix = Shifted(stiffness=stiffness, mass=problem.structure.dynamic_matrices[1], shift=self.near.modes.shift)
         solver = problem.structure.solver(problem.choice.solver)
-        self.near.take(factorise_roughly(matrix, rigid=problem.structure.rigid, solver=solver), stiffness)
+        self.near.adopt_factor(factorise_roughly(matrix, rigid=problem.structure.rigid, solver=solver), stiffness)
 
 
 def _most(problem: ModalProblem) -> int:
     """How many vectors the basis of a problem keeps from one state to the next."""
-    return max(KEPT * problem.mode_count, ROOM // problem.structure.mesh.unknowns)
+    return max(BASIS_STATES * problem.mode_count, ROOM // problem.structure.mesh.unknowns)
 
 
 def modes_with(

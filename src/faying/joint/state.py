@@ -10,7 +10,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
-from faying.joint.modal import MOST_MODES, SOLVERS, ModalProblem, ModesChoice
+from faying.joint.modal import MAX_MODES, SOLVERS, ModalProblem, ModesChoice
 from faying.joint.preload import PreloadProblem
 from faying.joint.preload_case import PreloadCase
 from faying.joint.shared_modes import EXACT, SharedModes
@@ -30,7 +30,7 @@ from faying.units import load_text, positive, show
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_ROWS = 10  # of a summary
+MAX_ROWS = 10  # of a summary
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +53,7 @@ def vibrate(
     structure, choice = problem.structure, problem.choice
     shared.begin(problem, preload)
     modes, stiffness = shared.of(problem, springs)
-    loss = structure.lost(springs, viscous=choice.damping == "viscous")
+    loss = structure.joint_loss(springs, viscous=choice.damping == "viscous")
     check_motions(structure, modes)
     preload.adopt_factor(modes.factorisation, problem.shift_frequency)
     assert shared.near is not None
@@ -93,7 +93,7 @@ class VibrationModes(Summary):
         """Return a heading and the first modes."""
         count = len(self)
         head = f"{count} elastic mode{'s' * (count > 1)}{f' at {self.load}' if self.load else ''}"
-        return head, self.rows(MOST_ROWS)
+        return head, self.rows(MAX_ROWS)
 
     def rows(self, most: int) -> dict[str, str]:
         """The first modes in words, by their number."""
@@ -285,8 +285,8 @@ def bolt_forces(structure: Structure, preload: float | str | Mapping[str, float 
 
 
 def _count(modes: int) -> int:
-    if not 1 <= modes <= MOST_MODES:
-        raise InputError(f"modes = {shortened(modes)}; give how many elastic modes, 1 to {MOST_MODES:,}")
+    if not 1 <= modes <= MAX_MODES:
+        raise InputError(f"modes = {shortened(modes)}; give how many elastic modes, 1 to {MAX_MODES:,}")
     return int(modes)
 
 

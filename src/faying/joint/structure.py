@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from faying.joint.state import State
 
-MOST_JOINTS = 4  # that a summary has a line for
+MAX_JOINTS = 4  # that a summary has a line for
 
 
 @checked_call
@@ -121,9 +121,9 @@ class Structure(Summary):
         if twice:
             raise InputError(f"part {', '.join(twice)} is two solid bolts; a part is drawn in once, with one preload")
         for joint in self.joints:
-            still = nothing_moves(joint.name, [face for face in joint.faces if self.mesh.is_shared(face)])
-            if still:
-                raise InputError(still)
+            fault = nothing_moves(joint.name, [face for face in joint.faces if self.mesh.is_shared(face)])
+            if fault:
+                raise InputError(fault)
         faces += [face for bolt in solid for face in bolt.faces if self.mesh.is_shared(face)]
         for bolt in solid:
             apart = seat_apart(bolt, faces)
@@ -360,13 +360,14 @@ class Structure(Summary):
 
         The loss is the imaginary part of the stiffness [N/m], or where viscous the damping [N s/m] of the JK paper.
         """
-        return added(self.dynamic_matrices[0], [self.joint_stiffness(springs)]), self.lost(springs, viscous=viscous)
+        stiffness = added(self.dynamic_matrices[0], [self.joint_stiffness(springs)])
+        return stiffness, self.joint_loss(springs, viscous=viscous)
 
     def joint_stiffness(self, springs: Sequence[Springs[Interface]]) -> Any:
         """Stiffness [N/m] of the springs of all joints alone; fixed unknowns cleared."""
         return added(None, [constrain(s.stiffness(), self.fixed, 0.0) for s in springs])
 
-    def lost(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> Any:
+    def joint_loss(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> Any:
         """The loss of the springs of all joints, as `coupled` gives it."""
         from scipy.sparse import csr_array
 
@@ -522,7 +523,7 @@ def structure_rows(structure: Structure) -> tuple[str, dict[str, str]]:
         f"{show(mesh.size, 'm')} from corner to corner"
     )
     rows["materials"] = listed(dict.fromkeys(names))
-    shown = structure.joints[:MOST_JOINTS]
+    shown = structure.joints[:MAX_JOINTS]
     for joint in shown:
         slip = "sticks" if joint.friction is None else f"friction {joint.friction:g}"
         rows[titled("joint", joint.name)] = (
@@ -535,8 +536,8 @@ def structure_rows(structure: Structure) -> tuple[str, dict[str, str]]:
         meshed = sum(isinstance(bolt, SolidBolt) for bolt in structure.bolts)
         stiff = sum(bolt.diameter is not None for bolt in structure.bolts)
         kinds = {"without stiffness": len(structure.bolts) - stiff - meshed, "with a shank": stiff, "meshed": meshed}
-        said = ", ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
-        rows["bolts"] = f"{listed(bolt.name for bolt in structure.bolts)} ({said})"
+        words = ", ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
+        rows["bolts"] = f"{listed(bolt.name for bolt in structure.bolts)} ({words})"
     if structure.dowels:
         rows["dowels"] = listed(dowel.name for dowel in structure.dowels)
     if structure.supports:

@@ -78,7 +78,7 @@ def acting(structure: Structure, loads: Sequence[Load]) -> dict[str, Acting]:
             total = total + out[name].times(factor)
         out[load.name] = total
     for name, found in out.items():
-        check_held(structure, name, found.force)
+        check_supported(structure, name, found.force)
     return out
 
 
@@ -165,12 +165,12 @@ def _move(structure: Structure, one: Displacement, moved: Array, what: str) -> N
     """Put the displacement of a supported face in its place."""
     known_face(structure.mesh, one.face, what)
     nodes = structure.mesh.face_nodes(one.face)
-    held = np.zeros(structure.mesh.unknowns, dtype=bool)
-    held[structure.fixed] = True
+    supported = np.zeros(structure.mesh.unknowns, dtype=bool)
+    supported[structure.fixed] = True
     for axis, size in enumerate(one.displacement):
         if not size:
             continue
-        if not held[3 * nodes + axis].all():
+        if not supported[3 * nodes + axis].all():
             raise InputError(
                 f"{what}: the face {one.face!r} is moved along {'xyz'[axis]}, in which no rigid support holds all of "
                 "it; give it a [[support]] without stiffness in that direction, or a force in place of the displacement"
@@ -184,7 +184,7 @@ def _move(structure: Structure, one: Displacement, moved: Array, what: str) -> N
         moved[nodes, axis] = size
 
 
-def check_held(structure: Structure, name: str, force: Array) -> None:
+def check_supported(structure: Structure, name: str, force: Array) -> None:
     """Raise InputError where nothing holds a structure against what is left over of a load [N] (unknowns,)."""
     if not structure.rigid.size:
         return

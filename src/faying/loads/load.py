@@ -7,8 +7,8 @@ from faying.errors import InputError
 from faying.misuse import checked_call, shortened
 from faying.units import si
 
-MOST_INCREMENTS = 1000  # of one case
-MOST_FACTOR = 1000.0  # on another case, either way
+MAX_INCREMENTS = 1000  # of one case
+MAX_FACTOR = 1000.0  # on another case, either way
 COLDEST, WARMEST = -1000.0, 2000.0  # K, change of temperature
 Vector = tuple[float, float, float]
 NOTHING: Vector = (0.0, 0.0, 0.0)
@@ -163,8 +163,8 @@ class Load:
             object.__setattr__(self, key, value)
         if not name.strip():
             raise InputError("a load has an empty name; give it one, by which results call it")
-        if not 1 <= increments <= MOST_INCREMENTS:
-            raise InputError(f"{what}: increments = {increments}; give a whole number from 1 to {MOST_INCREMENTS}")
+        if not 1 <= increments <= MAX_INCREMENTS:
+            raise InputError(f"{what}: increments = {increments}; give a whole number from 1 to {MAX_INCREMENTS}")
         for part, change in self.temperature.items():
             if not COLDEST <= change <= WARMEST:
                 raise InputError(
@@ -172,10 +172,10 @@ class Load:
                     f"tightened, {COLDEST:g} to {WARMEST:g} K"
                 )
         for other, factor in self.combine.items():
-            if not abs(factor) <= MOST_FACTOR:
+            if not abs(factor) <= MAX_FACTOR:
                 raise InputError(
-                    f"{what}: combine takes {other!r} {factor:g} times; give a factor from {-MOST_FACTOR:g} to "
-                    f"{MOST_FACTOR:g}"
+                    f"{what}: combine takes {other!r} {factor:g} times; give a factor from {-MAX_FACTOR:g} to "
+                    f"{MAX_FACTOR:g}"
                 )
         if not self.acts and after is None:
             raise InputError(

@@ -32,15 +32,15 @@ TOLERANCE = 1e-7  # the same of a state with opening and friction
 ON_THE_WAY = 1e-2  # the same at increments before the last, which tell no more than the way
 ROUNDED = 1e-6  # error below which an answer stands where rounding lets it fall no further
 SMALLEST = 1e-8  # of the preload: a smaller load counts as this, since pressures have 16 digits
-STILL = 5  # rounds in which an error does not halve: it stands
-MORE = 4  # times what vectors and their images take, while they are made
+STAGNANT_ROUNDS = 5  # rounds in which an error does not halve: it stands
+WORKING_ROOM = 4  # times what vectors and their images take, while they are made
 ROUNDS = 80  # of new vectors
 NEWTON_STEPS = 30
 HALVINGS = 6
 ROUNDS_AHEAD = 1  # whose vectors are found before joints are balanced again
-AHEAD = 40  # times the vectors of the linear answers' first round, for which there is room from the beginning
+VECTORS_AHEAD = 40  # times the vectors of the linear answers' first round, for which there is room from the beginning
 BORNE = 2.0  # shear over pressure that no friction bears
-KEPT = 0.01  # relative change of a tangent from which a Newton step counts it
+MIN_TANGENT_CHANGE = 0.01  # relative change of a tangent from which a Newton step counts it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -348,7 +348,9 @@ class LoadStatics:
         total = np.zeros((self.size, self.size), dtype=np.float32)
         for rows, change, (_, contact) in zip(self._single, changes, self.joints, strict=True):
             size = np.abs(change).max(axis=(1, 2))
-            some = np.flatnonzero(size > KEPT * np.maximum(contact.k_n, KEPT * contact.k_n.max()))
+            some = np.flatnonzero(
+                size > MIN_TANGENT_CHANGE * np.maximum(contact.k_n, MIN_TANGENT_CHANGE * contact.k_n.max())
+            )
             here = rows[some]
             turned = np.matmul((contact.weights[some, None, None] * change[some]).astype(np.float32), here)
             total += here.reshape(-1, self.size).T @ turned.reshape(-1, self.size)
@@ -417,7 +419,7 @@ class LoadStatics:
         size: about the root of twice the energy [J^0.5] of each (k,), by which small ones count as much as great ones.
         """
         require(
-            MORE * 16.0 * self.stiffness.shape[0] * new.shape[1],
+            WORKING_ROOM * 16.0 * self.stiffness.shape[0] * new.shape[1],
             f"load cases of {self.stiffness.shape[0]:,} unknowns with {self.size} vectors, and more vectors",
             "solve fewer cases at a time",
         )
@@ -426,7 +428,10 @@ class LoadStatics:
             return 0
         found, image = extension(new, self._vectors.values, self._images.values, self.stiffness, least=1e-20)
         if not self.size:  # room is made ahead of the first columns
-            self._vectors, self._images = GrowingColumns(found, ahead=AHEAD), GrowingColumns(image, ahead=AHEAD)
+            self._vectors, self._images = (
+                GrowingColumns(found, ahead=VECTORS_AHEAD),
+                GrowingColumns(image, ahead=VECTORS_AHEAD),
+            )
         else:
             self._vectors.add(found)
             self._images.add(image)
@@ -479,7 +484,7 @@ def _greatest_ratio(traction: Array) -> float:
 
 def _stands(errors: Sequence[float]) -> bool:
     """Whether errors, round by round, fall no further."""
-    return len(errors) > STILL and min(errors[-STILL:]) > min(errors[:-STILL]) / 2
+    return len(errors) > STAGNANT_ROUNDS and min(errors[-STAGNANT_ROUNDS:]) > min(errors[:-STAGNANT_ROUNDS]) / 2
 
 
 def replace_size(task: _Task, size: int) -> _Task:

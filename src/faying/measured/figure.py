@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.figure import draw_flat, frame_of, seen, shades
+from faying.fe.figure import draw_flat, frame_of, projected_view, shades
 from faying.measured.compare import ModalComparison
 from faying.measured.frf import FRF
 from faying.measured.identify import Identified
@@ -131,7 +131,7 @@ def _frf_axes(ax: Any, frf: FRF, output: int, input: int) -> None:
 def shape_test(ax: Any, comparison: ModalComparison, pair: int) -> Any:
     """Draw a measured shape on flat axes: the test's points at rest and moved, on the outline of the model."""
     t, m = comparison.pairs[pair]
-    moved, rest = (seen(points)[0] for points in _test_motion(comparison, int(t), int(m)))
+    moved, rest = (projected_view(points)[0] for points in _test_motion(comparison, int(t), int(m)))
     model = comparison.model
     if len(model.triangles):
         draw_flat(ax, model.points, model.triangles, np.tile((0.9, 0.91, 0.92, 1.0), (len(model.triangles), 1)))
@@ -159,8 +159,8 @@ def shape_model(ax: Any, comparison: ModalComparison, pair: int) -> Any:
     if len(model.triangles):
         draw_flat(ax, moved, model.triangles, shades(motion[model.triangles].mean(axis=1)))
     else:
-        ax.plot(*seen(moved)[0].T, ".", color=COLOURS[0], ms=2)
-    ax.plot(*seen(moved[np.unique(comparison.nodes)])[0].T, "o", color=COLOURS[1], ms=3)
+        ax.plot(*projected_view(moved)[0].T, ".", color=COLOURS[0], ms=2)
+    ax.plot(*projected_view(moved[np.unique(comparison.nodes)])[0].T, "o", color=COLOURS[1], ms=3)
     _framed(ax, comparison)
     ax.set_title(f"model {m + 1}: {model.frequencies[m]:.1f} Hz\nMAC {comparison.mac[t, m]:.2f}", fontsize=SMALL, pad=2)
     return ax

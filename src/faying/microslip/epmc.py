@@ -29,10 +29,10 @@ PER_DECADE = 6.0  # points of the curve
 LEAD_IN = 4  # decades below the first level that a curve may start
 SHORTEST = 1 / 16  # of a step, below which the continuation gives up
 TOLERANCE = 1e-7  # of the residual over the elastic forces of the mode
-MOST_STEPS = 25  # Newton steps of a point
+MAX_NEWTON_STEPS = 25  # Newton steps of a point
 FAST = 0.3  # fall of the residual from one step to the next with which an old derivative is kept
 COARSER = 4  # times fewer instants for the derivative
-NEAR = 2e-3  # of the last level: nearer than that a curve has reached its end
+END_TOLERANCE = 2e-3  # of the last level: nearer than that a curve has reached its end
 OTHER_MODES = 0.2  # share of other modes in the motion above which it is no longer the mode's
 ALL_SLIDING = 0.98  # share of the limit of friction that slides, above which the joint holds no more
 
@@ -153,7 +153,7 @@ class Epmc:
         z = self._predicted(amplitude, known or [self.first()])
         old, size = np.inf, np.inf
         step: _Accelerated | None = None
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_NEWTON_STEPS):
             left, forces = self._residual(z, amplitude)
             size = float(np.abs(left / self._scales).max())
             if size < self.tolerance:
@@ -189,14 +189,14 @@ class Epmc:
         Raises:
             NotConverged: Not even the first point is found.
         """
-        points, said = list(known), None
+        points, end_reason = list(known), None
         if not points:
             points = [self._led_in(low)]
-            said = None if keep is None else keep(points[0])
+            end_reason = None if keep is None else keep(points[0])
         step = longest = float(10 ** (1 / per_decade))
         while True:
             last = points[-1]
-            ended = ("basis", said) if said else self._ended(last, high)
+            ended = ("basis", end_reason) if end_reason else self._ended(last, high)
             if ended is not None:
                 return EpmcCurve(points=tuple(points), code=ended[0], reason=ended[1])
             try:
@@ -209,7 +209,7 @@ class Epmc:
                 continue
             points.append(point)
             step = min(longest, step**1.5)
-            said = None if keep is None else keep(point)
+            end_reason = None if keep is None else keep(point)
 
     def _led_in(self, low: float) -> EpmcPoint:
         """The first point, or one decades below where the linear limit is too far from it."""
@@ -222,7 +222,7 @@ class Epmc:
         raise AssertionError
 
     def _ended(self, last: EpmcPoint, high: float) -> tuple[str, str] | None:
-        if last.level >= high * (1 - NEAR):
+        if last.level >= high * (1 - END_TOLERANCE):
             return "amplitude", "the amplitude that was asked for is reached"
         if last.other_modes > OTHER_MODES:
             text = f"other modes make {last.other_modes:.0%} of the motion, so the curve has left this mode"

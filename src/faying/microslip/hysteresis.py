@@ -59,7 +59,7 @@ def advance(sliders: Sliders, state: SliderState, slip: Array, approach: Array) 
     slides = size > limit
     left = np.where(slides, limit / some, 1.0)
     k_t = np.where(shut, sliders.k_t, 0.0)
-    held = k_t * left
+    sticking = k_t * left
     along = one / some, two / some
     one *= left
     two *= left
@@ -70,8 +70,8 @@ def advance(sliders: Sliders, state: SliderState, slip: Array, approach: Array) 
     traction[:, 2] = np.sum(k_t * two, axis=1)
     tangent = np.zeros((len(slip), 3, 3))
     tangent[:, 0, 0] = np.sum(np.where(shut, sliders.k_n, 0.0), axis=1)
-    tangent[:, 1, 1] = tangent[:, 2, 2] = np.sum(held, axis=1)
-    dragged = np.where(slides, held, 0.0)
+    tangent[:, 1, 1] = tangent[:, 2, 2] = np.sum(sticking, axis=1)
+    dragged = np.where(slides, sticking, 0.0)
     drawn = np.where(slides, k_t * sliders.reach, 0.0)
     for i in range(2):
         tangent[:, 1 + i, 0] = -np.sum(drawn * along[i], axis=1)

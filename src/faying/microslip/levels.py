@@ -22,17 +22,17 @@ from faying.typing import Array
 PASSES = 40
 EVEN = 2  # passes after which a change of the secant stiffnesses, and from the first on one of the lag, is halved:
 HALF = 0.5  # undamped, the two drive each other away from the answer where most of a joint slides
-SETTLED = 1e-4  # relative change of the squared frequency, and a tenth of that of the damping, that ends the passes
+TOLERANCE = 1e-4  # relative change of the squared frequency, and a tenth of that of the damping, that ends the passes
 HARMONICS = 3  # highest of the motion that follows the first one
 # error of the damping over the root of the relative change of the squared frequency: a shape changes by that root, of
 # which the basis misses a part; covers the difference to harmonic balance on blocks, plates and a beam
-OF_SHAPE = 0.2
+ERROR_OF_SHAPE = 0.2
 # of the damping, over the motion that a harmonic near a mode would have, were it not left out, over that of the first
 # one: an energy of this size comes and goes (beam whose mode 5 has twice the frequency of mode 3)
-OF_NEAR = 4.0
+ERROR_OF_NEAR_MODE = 4.0
 MET = 0.1  # of its square: how near the speed of a harmonic may come to that of a mode
 SLIGHT = 1e-5  # relative change of the squared frequency that needs no second pass
-STILL = 1e-3  # of the greatest motion of a joint's points: what moves less keeps its stiffness at rest
+MIN_MOTION = 1e-3  # of the greatest motion of a joint's points: what moves less keeps its stiffness at rest
 SAMPLES = 32  # instants of a cycle
 SPRINGS = 32  # into which a law is cut at each point
 
@@ -109,11 +109,11 @@ class LevelModel:
             near = self._follow(motion, forces.force, speed, damping, softened) / amplitude
             softened, like = self._under(secants, rest)
             speed, shape = float(softened[0][like]), softened[1][:, like]
-            if abs(speed**2 - squared) < SETTLED * squared and error < 10 * SETTLED:
+            if abs(speed**2 - squared) < TOLERANCE * squared and error < 10 * TOLERANCE:
                 break
             greatest = float(self._greatest(shape[:, None])[0])
         lower = max(1 - (speed / float(speeds[number])) ** 2, 0.0)
-        error += OF_SHAPE * float(np.sqrt(lower)) + OF_NEAR * near
+        error += ERROR_OF_SHAPE * float(np.sqrt(lower)) + ERROR_OF_NEAR_MODE * near
         return speed / (2 * np.pi), damping, min(error, 1.0)
 
     def _follow(
@@ -162,7 +162,7 @@ class LevelModel:
             size = float(np.linalg.norm(u, axis=1).max())
             for axes in ([0], [1, 2]):
                 square = np.einsum("qi,qi->q", u[:, axes], u[:, axes])
-                moves = square > (STILL * size) ** 2
+                moves = square > (MIN_MOTION * size) ** 2
                 k = np.einsum("qi,qi->q", t[:, axes], u[:, axes])[moves] / square[moves]
                 for axis in axes:
                     change[moves, axis, axis] = k - rest[moves, axis, axis]

@@ -171,7 +171,7 @@ class Anchors:
 
     A slider's stretch is slip minus anchor. The anchor moves only while it slides, so its derivative does. Along the
     direction n of the last slide it depends on that instant alone: n times (reach, n1, n2) times the waves then. So
-    those parts are summed over the sliders of a point by instant, `held` (samples, 5, points). Across n it remembers
+    those parts are summed over the sliders of a point by instant, `carried` (samples, 5, points). Across n it remembers
     what was before: `across` (1+2H, 3, sliders), in single precision, with which Newton's method converges as fast.
     """
 
@@ -183,7 +183,7 @@ class Anchors:
     along: Array  # (3, sliders): n1, n2 and reach at the last slide; 0 before the first
     when: Index
     across: NDArray[np.float32]
-    held: Array | None = None
+    carried: Array | None = None
     history: Array | None = None
 
     @classmethod
@@ -213,21 +213,21 @@ class Anchors:
             along=self.along[:, kept],
             when=self.when[kept],
             across=self.across[..., kept],
-            held=np.zeros((samples, 5, len(first))),
+            carried=np.zeros((samples, 5, len(first))),
             history=np.empty((samples, count, 2, 3, len(first))),
         )
-        found._hold(np.arange(len(kept)), found.along, 1.0)
+        found._add_carried(np.arange(len(kept)), found.along, 1.0)
         return found
 
-    def _hold(self, which: Index, along: Array, sign: float) -> None:
+    def _add_carried(self, which: Index, along: Array, sign: float) -> None:
         """Add or take away what sliders hold along their last slide: (n1 reach, n2 reach, n1 n1, n1 n2, n2 n2)."""
-        assert self.held is not None
+        assert self.carried is not None
         n1, n2, reach = along
         points = len(self.first)
         place = self.when[which] * (5 * points) + self.local[which]
         one, two = (sign * self.k[which] * n for n in (n1, n2))
         for i, force in enumerate((one * reach, two * reach, one * n1, one * n2, two * n2)):
-            np.add.at(self.held.reshape(-1), place + i * points, force)
+            np.add.at(self.carried.reshape(-1), place + i * points, force)
 
     def slide(self, t: int, which: Index, trial: tuple[Array, Array], size: Array, left: Array, depth: Array) -> None:
         """Sliders `which` are dragged along the trial stretch, of length `size`, of which `left` is left.
@@ -243,29 +243,29 @@ class Anchors:
         waves = self.to_time.astype(np.float32)
         now, then = waves[t][:, None], waves.T.take(self.when[which], axis=1)
         turn = left * (new[0] * old[1] - new[1] * old[0])
-        gone = 1 - left
+        slipped = 1 - left
         across = self.across.take(which, axis=-1)
         across *= _single(left * (new[0] * old[0] + new[1] * old[1]))
         for i, by in enumerate((old[2], old[0], old[1])):
             across[:, i] += _single(turn * by) * then
-        across[:, 1] -= _single(gone * new[1]) * now
-        across[:, 2] += _single(gone * new[0]) * now
+        across[:, 1] -= _single(slipped * new[1]) * now
+        across[:, 2] += _single(slipped * new[0]) * now
         self.across[..., which] = across
-        if self.held is not None:
-            self._hold(which, old, -1.0)
+        if self.carried is not None:
+            self._add_carried(which, old, -1.0)
         self.along[:, which] = new
         self.when[which] = t
-        if self.held is not None:
-            self._hold(which, new, 1.0)
+        if self.carried is not None:
+            self._add_carried(which, new, 1.0)
 
     def read(self, t: int) -> None:
         """Note the derivative at an instant."""
-        assert self.held is not None
+        assert self.carried is not None
         assert self.history is not None
         samples, count = self.to_time.shape
-        held = (self.to_time.T @ self.held.reshape(samples, -1)).reshape(count, 5, -1)
+        carried = (self.to_time.T @ self.carried.reshape(samples, -1)).reshape(count, 5, -1)
         now = self.history[t]
-        now[:, 0], now[:, 1] = held[:, [0, 2, 3]], held[:, [1, 3, 4]]
+        now[:, 0], now[:, 1] = carried[:, [0, 2, 3]], carried[:, [1, 3, 4]]
         now[:, 0] -= np.add.reduceat(self.across * _single(self.k * self.along[1]), self.first, axis=-1)
         now[:, 1] += np.add.reduceat(self.across * _single(self.k * self.along[0]), self.first, axis=-1)
 

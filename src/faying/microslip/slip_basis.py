@@ -180,9 +180,9 @@ class SlipBasis:
             traction[0] -= joint.at_rest[0] * joint.weights[:, None]
             left = left + interface.relative.T @ traction.reshape(len(X), -1).T
         left[self.structure.fixed] = 0.0
-        mend = self._answer(left)
+        correction = self._answer(left)
         size = float(np.einsum("ij,jk,ik->", X, epmc.model.linear, X))
-        return float(np.sqrt(max(np.einsum("ij,ij->", left, mend), 0.0) / size)), mend
+        return float(np.sqrt(max(np.einsum("ij,ij->", left, correction), 0.0) / size)), correction
 
     def _answer(self, right: Array) -> Array:
         """The factorisation that the modes have left, on right-hand sides (unknowns, k)."""
@@ -217,13 +217,13 @@ class SlipBasis:
                     here = epmc.solve(amplitude, grown)
                 except NotConverged:
                     return worst
-                error, mend = self.residual(epmc, here)
+                error, correction = self.residual(epmc, here)
                 if report is not None:
                     report(f"basis: {self.basis.vectors.shape[1]} vectors, residual {error:.1e}")
                 if error < tolerance or turn == ENRICHMENTS:
                     break
                 size = float(self._energy(self.basis.vectors @ here.coordinates[1:3].T).sum())
-                if not self.basis.add(mend, least=(0.1 * tolerance) ** 2 * size):
+                if not self.basis.add(correction, least=(0.1 * tolerance) ** 2 * size):
                     break
             worst = max(worst, error)
             if here is not None and (here.slipping > ALL_SLIDING or here.other_modes > OTHER_MODES):

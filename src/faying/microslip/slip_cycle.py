@@ -20,7 +20,7 @@ from faying.typing import Array
 
 STEPS = 24  # load steps from one end of the cycle to the other
 TOLERANCE = 1e-8  # residual of a step over the elastic forces of the mode
-MOST_STEPS = 40  # Newton steps of a load step
+MAX_NEWTON_STEPS = 40  # Newton steps of a load step
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +114,7 @@ class _Statics:
         x, load = self._guess(target)
         scale = (self.rate**2 + self.rates**2) * size
         left = np.inf
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_NEWTON_STEPS):
             force, tangent, states = self._contact(x)
             miss = force.copy()
             miss[self.mode] -= load

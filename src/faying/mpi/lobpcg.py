@@ -10,7 +10,7 @@ import numpy as np
 Block = Any  # (rows of this process, vectors)
 WATCHED = 4  # vectors beyond those wanted that must have found their place above them
 PLACED = 1e-2  # estimated relative error of their eigenvalues
-MOST_STEPS = 300
+MAX_STEPS = 300
 DROPPED = 1e-14  # of the largest eigenvalue of a Gram matrix: directions below it are rounding
 NO_STEP = 1e-8  # of a unit vector: a change below it gives no direction
 ROWS = 20_000  # that are combined at a time
@@ -71,7 +71,7 @@ class Lobpcg:
         limits = np.full(len(self.left), PLACED)
         limits[: self._count] = tolerance
         active = everything = np.arange(len(self.left))
-        last = self.steps + MOST_STEPS
+        last = self.steps + MAX_STEPS
         while self.steps < last:
             search = self._search(active)
             coarse = self.left > limits

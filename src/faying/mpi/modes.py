@@ -25,7 +25,7 @@ WORKER = Path(__file__).with_name("mpi_worker.py")
 SYSTEM = "/usr/bin/python3"
 UNSTABLE = 1e-4  # of the shift: eigenvalues further below zero are not rounding
 LAST_WORDS = 12  # lines of the processes that an error repeats
-LEAST = 3000  # unknowns of each process: with fewer, more processes do not pay
+MIN_UNKNOWNS = 3000  # unknowns of each process: with fewer, more processes do not pay
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +67,7 @@ def modes_over_mpi(
         raise InputError(
             f"{len(points)} points for {n} unknowns: each node has three unknowns that follow each other, x, y, z"
         )
-    if n < LEAST * processes or n < 100 * count:
+    if n < MIN_UNKNOWNS * processes or n < 100 * count:
         raise InputError(
             f"{count} modes of {n:,} unknowns over {processes} processes: a structure so small is solved without --mpi"
         )
@@ -111,15 +111,15 @@ def programs() -> tuple[str, str]:
     mpiexec = shutil.which("mpiexec")
     if mpiexec is None:
         raise InputError(f"--mpi needs mpiexec; install an MPI (Debian: {DEBIAN})")
-    asked = os.environ.get("FAYING_MPI_PYTHON")
-    for python in [asked] if asked else [sys.executable, SYSTEM]:
+    named = os.environ.get("FAYING_MPI_PYTHON")
+    for python in [named] if named else [sys.executable, SYSTEM]:
         try:
             done = subprocess.run([python, str(WORKER)], capture_output=True, check=False)
         except OSError:
             continue
         if not done.returncode:
             return mpiexec, python
-    where = f"{asked}, as FAYING_MPI_PYTHON says," if asked else f"this Python or {SYSTEM}"
+    where = f"{named}, as FAYING_MPI_PYTHON says," if named else f"this Python or {SYSTEM}"
     raise InputError(
         f"--mpi needs petsc4py and slepc4py in {where}; install them (Debian: {DEBIAN}), or name the Python that has "
         "them in the environment's FAYING_MPI_PYTHON"
@@ -143,12 +143,12 @@ def _start(command: list[str]) -> None:
     with started(command) as running:
         assert running.stdout is not None
         try:
-            said = running.stdout.read()
+            output = running.stdout.read()
         except BaseException:
             running.terminate()  # mpiexec then ends its processes
             raise
     if running.returncode:
-        lines = [line for line in said.decode("utf-8", errors="replace").splitlines() if line.strip(" -")]
+        lines = [line for line in output.decode("utf-8", errors="replace").splitlines() if line.strip(" -")]
         raise NotConverged(
             f"{' '.join(command[:3])} failed (status {running.returncode}): " + "\n".join(lines[-LAST_WORDS:])
         )

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 else:  # beside this file, which is run as a script
     from mpi_petsc import ANSWER, check_size, guarded, load, multigrid, peak_memory, read_matrix, rigid_motions
 
-MOST_STEPS = 1000
+MAX_STEPS = 1000
 SOON, LATER, SLOWER = 2e-4, 1e-2, 1.3  # s between two looks for an order: at first, at most, and the growth between
 
 
@@ -97,7 +97,7 @@ class Solver:
     def _solve(self, number: int, reduction: float) -> dict[str, Any]:
         """Steps for each column; and the fault, which all processes meet alike, where one has no solution."""
         matrix, solver = self.matrices[number]
-        solver.setTolerances(rtol=reduction, atol=0.0, max_it=MOST_STEPS)
+        solver.setTolerances(rtol=reduction, atol=0.0, max_it=MAX_STEPS)
         given = np.load(self.place / "right.npy")
         solved, steps, fault = np.empty(given.shape, order="F"), [], None
         right, answer = matrix.createVecLeft(), matrix.createVecRight()

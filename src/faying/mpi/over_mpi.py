@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import FayingError, InputError, NotConverged
-from faying.mpi.modes import LAST_WORDS, LEAST, programs, started
+from faying.mpi.modes import LAST_WORDS, MIN_UNKNOWNS, programs, started
 from faying.mpi.mpi_petsc import ANSWER
 from faying.mpi.partition import rows_of_pieces, write_operator, write_points
 from faying.numerics.solve import MPI
@@ -44,7 +44,7 @@ class OverMpi:
 
     def __init__(self, points: Array, processes: int) -> None:
         unknowns = 3 * len(points)
-        if unknowns < LEAST * processes:
+        if unknowns < MIN_UNKNOWNS * processes:
             raise InputError(
                 f"{unknowns:,} unknowns over {processes} processes: a structure so small is solved without MPI"
             )
@@ -171,7 +171,7 @@ class _Group:
         assert self._running is not None
         assert self._running.stdout is not None
         self._orders += 1
-        said: deque[str] = deque(maxlen=LAST_WORDS)
+        words: deque[str] = deque(maxlen=LAST_WORDS)
         try:
             self._write(word, matrix, reduction)
             while line := _line(self._running.stdout):
@@ -179,13 +179,13 @@ class _Group:
                     answer: dict[str, Any] = json.loads(line[len(ANSWER) :])
                     return answer
                 if line.strip(" -\n"):
-                    said.append(line.rstrip())
+                    words.append(line.rstrip())
         except BaseException:  # an answer that nobody has waited for would be taken for the next
             self.end(at_once=True)
             raise
         status = self._running.wait()
         mpiexec, python = self._programs
-        self._fault = f"{mpiexec} -n {self._processes} {python} ended (status {status}): " + "\n".join(said)
+        self._fault = f"{mpiexec} -n {self._processes} {python} ended (status {status}): " + "\n".join(words)
         self.end(at_once=True)
         raise FayingError(self._fault)
 

@@ -26,14 +26,14 @@ class Basis:
     rows: Sequence[Array] = ()
     small: list[Array] = field(init=False)
     relative: list[Array] = field(init=False)
-    seen: list[Array] = field(init=False)
+    at_rows: list[Array] = field(init=False)
 
     def __post_init__(self) -> None:
         nothing = np.zeros((self.reference.shape[0], 0))
         self._vectors, self._image = GrowingColumns(nothing), GrowingColumns(nothing)
         self.small = [np.zeros((0, 0)) for _ in self.operators]
-        self.relative = [np.zeros((3 * len(trace.weights), 0)) for trace in self.interfaces]
-        self.seen = [np.zeros((len(rows), 0)) for rows in self.rows]
+        self.relative = [np.zeros((3 * len(interface.weights), 0)) for interface in self.interfaces]
+        self.at_rows = [np.zeros((len(rows), 0)) for rows in self.rows]
 
     @property
     def vectors(self) -> Array:
@@ -67,9 +67,11 @@ class Basis:
             zip(*(np.split(x, len(self.small), axis=1) for x in (sides, corners)), strict=True)
         ):
             self.small[i] = np.block([[self.small[i], side], [side.T, (corner + corner.T) / 2]])
-        moved = [trace.relative @ new for trace in self.interfaces]
+        moved = [interface.relative @ new for interface in self.interfaces]
         self.relative = [np.concatenate(pair, axis=1) for pair in zip(self.relative, moved, strict=True)]
-        self.seen = [np.concatenate([old, rows @ new], axis=1) for old, rows in zip(self.seen, self.rows, strict=True)]
+        self.at_rows = [
+            np.concatenate([old, rows @ new], axis=1) for old, rows in zip(self.at_rows, self.rows, strict=True)
+        ]
         self._vectors.add(new)
 
     def turn(self, rotation: Array) -> None:
@@ -78,4 +80,4 @@ class Basis:
             kept.turn(rotation)
         self.small = [rotation.T @ matrix @ rotation for matrix in self.small]
         self.relative = [relative @ rotation for relative in self.relative]
-        self.seen = [seen @ rotation for seen in self.seen]
+        self.at_rows = [values @ rotation for values in self.at_rows]

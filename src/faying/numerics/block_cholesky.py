@@ -32,32 +32,32 @@ class BlockCholesky:
         rank = {block: place for place, block in enumerate(self._order)}
         blocks = [np.asarray(diagonal[k], dtype=float) for k in self._order]
         diagonal.clear()
-        beside: list[dict[int, _Edge]] = [{} for _ in blocks]
+        neighbours: list[dict[int, _Edge]] = [{} for _ in blocks]
         while edges:
             (one, other), edge = edges.popitem()
             i, j = rank[one], rank[other]
-            beside[min(i, j)][max(i, j)] = _Edge.of(edge if i < j else edge.T)
+            neighbours[min(i, j)][max(i, j)] = _Edge.of(edge if i < j else edge.T)
         self._lower: list[Array] = []
-        self._beside = beside
+        self._neighbours = neighbours
         for i in range(len(blocks)):
             lower = _cholesky(blocks[i])
             blocks[i] = np.zeros((0, 0))
             self._lower.append(lower)
-            for edge in beside[i].values():
+            for edge in neighbours[i].values():
                 edge.values = _forward(lower, edge.values)
-            for j, edge in beside[i].items():
+            for j, edge in neighbours[i].items():
                 blocks[j][np.ix_(edge.columns, edge.columns)] -= edge.values.T @ edge.values
-            for j, k in combinations(sorted(beside[i]), 2):
-                first, second = beside[i][j], beside[i][k]
+            for j, k in combinations(sorted(neighbours[i]), 2):
+                first, second = neighbours[i][j], neighbours[i][k]
                 fill = np.zeros((len(blocks[j]), len(second.columns)))
                 fill[first.columns] = -first.values.T @ second.values
-                met = beside[j].get(k)
-                beside[j][k] = _Edge(second.columns, fill) if met is None else met.plus(second.columns, fill)
+                met = neighbours[j].get(k)
+                neighbours[j][k] = _Edge(second.columns, fill) if met is None else met.plus(second.columns, fill)
             if self._order[i] in rough:
                 self._lower[i] = lower.astype(np.float32)
-                for edge in beside[i].values():
+                for edge in neighbours[i].values():
                     edge.values = edge.values.astype(np.float32)
-        kept = [*self._lower, *(edge.values for row in beside for edge in row.values())]
+        kept = [*self._lower, *(edge.values for row in neighbours for edge in row.values())]
         self.memory = float(sum(values.nbytes for values in kept))
 
     def solve(self, right: Sequence[Array]) -> list[Array]:
@@ -65,10 +65,10 @@ class BlockCholesky:
         found = [np.array(right[k], dtype=float) for k in self._order]
         for i, lower in enumerate(self._lower):
             found[i] = _forward(lower, found[i])
-            for j, edge in self._beside[i].items():
+            for j, edge in self._neighbours[i].items():
                 found[j][edge.columns] -= edge.values.T @ found[i].astype(edge.values.dtype)
         for i in reversed(range(len(found))):
-            for j, edge in self._beside[i].items():
+            for j, edge in self._neighbours[i].items():
                 found[i] -= edge.values @ found[j][edge.columns].astype(edge.values.dtype)
             found[i] = _backward(self._lower[i], found[i])
         out: list[Array] = [np.zeros(0)] * len(found)

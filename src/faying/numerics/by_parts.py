@@ -29,7 +29,7 @@ ALIKE = 1e-9  # relative difference of two parts' forces under the same motion t
 CHANGED = 1e-11  # relative change of the forces inside the parts beyond which they are factorised anew
 ROOM = 0.3  # of the free memory that the factors of all parts may take before they go to the disk
 ROUNDING = 1e-8  # of the greatest: rigid motions that touched unknowns cannot tell apart
-FEW = 8  # right-hand sides solved together: each takes some times its room
+COLUMNS_TOGETHER = 8  # right-hand sides solved together: each takes some times its room
 SEED = 20261123
 
 
@@ -141,10 +141,10 @@ class _Parts:
         change: sparse (t, t), what the matrix has there beyond that of the first part of this kind.
         """
         kind = self.kind_of[number]
-        unit, mended = self._corrections[kind]
+        unit, corrected = self._corrections[kind]
         found = self._factors[kind].schur[np.ix_(rows, columns)].astype(float)
-        found += mended[rows] @ unit[columns].T
-        found += unit[rows] @ mended[columns].T
+        found += corrected[rows] @ unit[columns].T
+        found += unit[rows] @ corrected[columns].T
         more = block(change, rows, columns).tocoo()
         found[more.row, more.col] += more.data
         return found
@@ -201,7 +201,7 @@ class ByParts:
         if right.ndim == 1:
             return self._solve(right[:, None])[:, 0]
         # a factor that comes from the disk comes once for all of them
-        step = max(right.shape[1], 1) if self._parts.on_disk else FEW
+        step = max(right.shape[1], 1) if self._parts.on_disk else COLUMNS_TOGETHER
         found = np.empty(right.shape, order="F")
         for k in range(0, right.shape[1], step):
             found[:, k : k + step] = self._solve(right[:, k : k + step])
@@ -294,11 +294,11 @@ def _kinds(parts: Sequence[Index], touched: Any, matrix: Any, *, alike: bool) ->
     part of their size held.
     """
     sizes = sorted({len(part) for part in parts})
-    held = {size: np.any([touched[part] for part in parts if len(part) == size], axis=0) for size in sizes}
+    fixed = {size: np.any([touched[part] for part in parts if len(part) == size], axis=0) for size in sizes}
     moves = np.zeros(matrix.shape[0])
     for part in parts:
         same = np.random.default_rng(SEED).standard_normal(len(part))
-        moves[part] = np.where(held[len(part)], 0.0, same)
+        moves[part] = np.where(fixed[len(part)], 0.0, same)
     forces = matrix @ moves
     firsts: list[int] = []
     kinds: list[int] = []

@@ -43,6 +43,6 @@ class UpdatedStiffness:
         return np.asarray(self.before.diagonal() + self.change.diagonal())
 
 
-def whole(matrix: Any) -> Any:
+def assembled(matrix: Any) -> Any:
     """A matrix, or the sum of one that has changed, as one CSR matrix."""
     return (matrix.before + matrix.change).tocsr() if isinstance(matrix, UpdatedStiffness) else matrix

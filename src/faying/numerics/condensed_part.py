@@ -39,7 +39,7 @@ class CondensedPart(Pardiso):
         if self._none:
             super().__init__(matrix, single=single)
             return
-        super().__init__(matrix, single=single, kept=touched)
+        super().__init__(matrix, single=single, not_eliminated=touched)
         self._values, self._kept = np.zeros(0, dtype=self._type), None  # the factor has taken what it needs
 
     def forward(self, right: Array) -> Array:

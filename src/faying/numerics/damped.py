@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.numerics.modal_reanalysis import LEAST, Measure, ModalReanalysis
+from faying.numerics.modal_reanalysis import MIN_NEW_SHARE, Measure, ModalReanalysis
 from faying.numerics.modes import Modes
 from faying.numerics.product import combined, product
 from faying.numerics.signs import definite
@@ -116,7 +116,7 @@ def damped_near(
         else:
             miss = held + lost * root + moved * root**2
         size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), moved).real
-        error, mend = _measured(measure, miss, size, tolerance)
+        error, correction = _measured(measure, miss, size, tolerance)
         if error.max() < tolerance:
             return DampedModes(
                 frequencies=_frequency(squared, root, kind),
@@ -124,7 +124,7 @@ def damped_near(
                 error=error,
                 shapes=definite(vectors / np.sqrt(np.einsum("im,im->m", vectors, moved))),
             )
-        if not _enrich(near, stiffness, mend, least=SLIGHT * tolerance):
+        if not _enrich(near, stiffness, correction, least=SLIGHT * tolerance):
             break
     raise NotConverged(
         f"complex modes: the estimated error stays at {error.max():.1e} (tolerance {tolerance:.0e}); the loss "
@@ -142,10 +142,10 @@ def _measured(measure: Measure, miss: Complex, size: Array, tolerance: float) ->
     error = measure.guessed(parts, sizes, np.arange(len(sizes)))
     poor = ~(error.reshape(2, -1).sum(axis=0) < tolerance)
     chosen = np.flatnonzero(np.tile(poor, 2) & ~(error < SLIGHT * tolerance))
-    mend = parts[:, :0]
+    correction = parts[:, :0]
     if len(chosen):
-        error[chosen], mend = measure.solved(np.asfortranarray(parts[:, chosen]), sizes[chosen], chosen)
-    return error.reshape(2, -1).sum(axis=0), mend / np.sqrt(sizes[chosen])
+        error[chosen], correction = measure.solved(np.asfortranarray(parts[:, chosen]), sizes[chosen], chosen)
+    return error.reshape(2, -1).sum(axis=0), correction / np.sqrt(sizes[chosen])
 
 
 def _frequency(squared: Complex, root: Complex, kind: str) -> Array:
@@ -186,7 +186,7 @@ def _enrich(near: ModalReanalysis, stiffness: Any, new: Array, *, least: float) 
     gram = new.T @ product(stiffness, new)
     values, rotation = np.linalg.eigh((gram + gram.T) / 2)
     new = new @ rotation[:, values > max(least, 1e-12 * values.max(initial=0.0))]
-    return near.span.add(new, least=LEAST) if new.shape[1] else 0
+    return near.span.add(new, least=MIN_NEW_SHARE) if new.shape[1] else 0
 
 
 def _eigen(stiffness: Array, loss: Array, count: int, kind: str) -> tuple[Complex, Complex, Complex]:

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.numerics.changed import UpdatedStiffness, whole
+from faying.numerics.changed import UpdatedStiffness, assembled
 from faying.numerics.modes import Modes, lowest_modes
 from faying.numerics.product import combined, product
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import Single, factorise_roughly
 from faying.numerics.solve import Factorisation, Factoriser, factorise
-from faying.numerics.span import Span, few
+from faying.numerics.span import Span, chunks
 from faying.typing import Array, Index
 
 ROUNDS = 40  # enrichments of the basis
@@ -21,10 +21,10 @@ START = 1e-2  # residual of modes, as `lowest_modes` takes it, that are to be re
 REFINED = 1e-9  # estimated relative error of the squared frequencies of refined modes
 WATCHED = 4  # modes beyond those wanted that must have found their place above them
 PLACED = 1e-2  # estimated relative error of their squared frequencies
-SEEN = 0.9  # share of the changed unknowns that must have been looked at before
+MIN_OVERLAP = 0.9  # share of the changed unknowns that must have been looked at before
 EVERYWHERE = 6  # vectors of no symmetry that each new stiffness begins with
 SEED = 20261124
-LEAST = 1e-10  # share of a new vector that must be new
+MIN_NEW_SHARE = 1e-10  # share of a new vector that must be new
 NOWHERE = np.zeros(0, dtype=np.int64), np.zeros((0, 0))  # unknowns, and the rows of a basis there
 NEIGHBOURS = 10  # modes that are taken to lie as near together as two that are found
 DOUBT = 3.0  # times by which the energy of a residual may have grown against that by the diagonal since the last round
@@ -55,7 +55,7 @@ class ModalReanalysis:
         self.diagonal = stiffness.diagonal() + modes.shift * mass.diagonal()
         self._measure = self.measure(0)
 
-    def take(self, factor: Factorisation, stiffness: Any) -> None:
+    def adopt_factor(self, factor: Factorisation, stiffness: Any) -> None:
         """Go on with the factorisation of another stiffness [N/m] (n, n), shifted alike; the basis stays."""
         self.modes = replace(self.modes, factorisation=factor, factorised=stiffness)
         self.diagonal = stiffness.diagonal() + self.modes.shift * self.span.mass.diagonal()
@@ -67,8 +67,8 @@ class ModalReanalysis:
 
     def add(self, vectors: Array) -> None:
         """Take vectors (n, k) that are likely to be near modes to come, such as those of a stiffness between."""
-        for some in few(*vectors.shape):
-            self.span.add(vectors[:, some], least=LEAST)
+        for some in chunks(*vectors.shape):
+            self.span.add(vectors[:, some], least=MIN_NEW_SHARE)
 
     def under(
         self,
@@ -99,11 +99,13 @@ class ModalReanalysis:
         span = self.span
         first = None
         touched = self._change(stiffness)[1]
-        if len(touched) and np.isin(touched, self._looked).mean() < SEEN:  # else they have been looked for already
+        if (
+            len(touched) and np.isin(touched, self._looked).mean() < MIN_OVERLAP
+        ):  # else they have been looked for already
             self.look_everywhere(touched)
         targets = np.full(count + WATCHED, PLACED)
         targets[:count] = tolerance
-        errors, settled = np.ones(len(targets)), np.zeros(len(targets))
+        errors, converged = np.ones(len(targets)), np.zeros(len(targets))
         if self._measure.count != len(targets):
             self._measure = self.measure(len(targets))
         for done in range(rounds):
@@ -116,20 +118,20 @@ class ModalReanalysis:
             target[count:] = np.clip((squared[count:] / squared[count - 1] - 1) / NEIGHBOURS, tolerance, PLACED)
             sharper = _sharper(values[order[self.rigid :]], target)
             target *= sharper
-            # what has settled only comes nearer as the basis grows, unless another mode comes down from above
-            open_ = np.flatnonzero((error >= target) | (squared < settled[: len(wanted)] * (1 - error)))
-            settled[open_] = squared[open_]
-            error[open_], mend = self._error(stiffness, inner[:, wanted], squared, open_, target)
+            # what has converged only comes nearer as the basis grows, unless another mode comes down from above
+            open_ = np.flatnonzero((error >= target) | (squared < converged[: len(wanted)] * (1 - error)))
+            converged[open_] = squared[open_]
+            error[open_], correction = self._error(stiffness, inner[:, wanted], squared, open_, target)
             excess = float((error / target).max())
             if excess < 1:
-                said = (error / sharper)[:count]
-                found = self._found(values, inner, order[: self.rigid + count + spare], said, shapes)
+                stated = (error / sharper)[:count]
+                found = self._found(values, inner, order[: self.rigid + count + spare], stated, shapes)
                 self._keep(inner[:, order])
                 return found
             first = first or excess
             if done + _rounds_left(excess, first, done) > rounds:
                 break
-            if not sum([span.add(some, least=LEAST) for some in mend]):
+            if not sum([span.add(some, least=MIN_NEW_SHARE) for some in correction]):
                 break
         stays = (error / sharper)[:count].max()
         raise NotConverged(
@@ -144,8 +146,8 @@ class ModalReanalysis:
         mix: coefficients (m, w) of the modes that are looked for, with their squared circular frequencies (w,) and
         targets (w,); which (k,): of them.
         """
-        errors, mend = np.zeros(len(squared)), []
-        for some in (which[part] for part in few(len(self.diagonal), len(which))):
+        errors, correction = np.zeros(len(squared)), []
+        for some in (which[part] for part in chunks(len(self.diagonal), len(which))):
             left = _left_over(stiffness, self.span.mass, combined(self.span.vectors, mix[:, some]), squared[some])
             size = np.abs(squared[some])
             errors[some] = self._measure.guessed(left, size, some)
@@ -154,8 +156,8 @@ class ModalReanalysis:
             if len(poor):
                 left = left[:, far]  # the others' room is free before the solution takes its own
                 errors[poor], solved = self._measure.solved(left, size[far], poor)
-                mend.append(solved[:, errors[poor] > targets[poor] / 10])
-        return errors[which], mend
+                correction.append(solved[:, errors[poor] > targets[poor] / 10])
+        return errors[which], correction
 
     def projected(self, stiffness: Any) -> tuple[Array, Array]:
         """Squared circular frequencies (m,) and coefficients (m, m) of the modes of a stiffness in the basis."""
@@ -185,7 +187,7 @@ class ModalReanalysis:
             if stiffness is before:  # the difference would take the room of both
                 self._changed = stiffness, stiffness[:0, :0], np.zeros(0, dtype=np.int64)
             else:
-                change = (whole(stiffness) - before).tocsr()
+                change = (assembled(stiffness) - before).tocsr()
                 change.eliminate_zeros()
                 touched = np.flatnonzero(np.diff(change.indptr))
                 self._changed = stiffness, change[touched][:, touched], touched
@@ -204,12 +206,12 @@ class ModalReanalysis:
         for _ in range(2):  # towards the low modes
             found = factor.solve(product(mass, found))
             found /= np.sqrt(np.einsum("ij,ij->j", found, product(mass, found)))
-        self.span.add(found, least=LEAST)
+        self.span.add(found, least=MIN_NEW_SHARE)
         if len(touched):
             forces = np.zeros((mass.shape[0], min(EVERYWHERE, len(touched))))
             forces[touched] = self._random.standard_normal((len(touched), forces.shape[1]))
             moved = factor.solve(forces)
-            self.span.add(moved / np.sqrt(np.einsum("ij,ij->j", moved, product(mass, moved))), least=LEAST)
+            self.span.add(moved / np.sqrt(np.einsum("ij,ij->j", moved, product(mass, moved))), least=MIN_NEW_SHARE)
             self._looked = touched
 
     def _found(self, values: Array, inner: Array, order: Index, error: Array, shapes: bool) -> Modes:
@@ -333,7 +335,7 @@ def refined_modes(
     if isinstance(solver, Factoriser):
         factor = solver.factorise(matrix, single=False)
     else:
-        factor = factorise(matrix.whole(), solver)
+        factor = factorise(matrix.assembled(), solver)
     return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid)
 
 
@@ -359,8 +361,8 @@ def near_factor(
         InputError, NotConverged: as `lowest_modes` does.
     """
     # those beyond the last one wanted keep another from standing in its place while residuals are large
-    beyond = max(WATCHED - spare, 0)
-    tolerance = np.concatenate([np.full(count, START), np.full(beyond, np.inf)])
+    unwatched = max(WATCHED - spare, 0)
+    tolerance = np.concatenate([np.full(count, START), np.full(unwatched, np.inf)])
     modes = lowest_modes(
         stiffness,
         mass,

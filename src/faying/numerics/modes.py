@@ -15,7 +15,7 @@ SEED = 20240611
 WIDTH = 8  # of a block of vectors: a factor is read once for all of them
 TOO_HIGH = 30.0  # times the highest frequency of a single unknown: such a shift leaves few digits of the modes
 ROWS = 50_000  # of the basis that are joined at a time
-MOST_STEPS = 1200  # vectors of the basis
+MAX_STEPS = 1200  # vectors of the basis
 SAME = 1e-6  # relative difference of eigenvalues of A^-1 M below which they may be one
 NOTHING = 1e-13  # of the size of a block: what the basis leaves of it is rounding, and the basis is whole
 TOLERANCE = 1e-8  # residual of A^-1 M x = theta x over theta; the error of theta is of its square over the gap
@@ -67,11 +67,11 @@ def lowest_modes(
         raise InputError(f"{least} modes of a structure with {most} unknowns that have mass; ask for 1 to {most}")
     if factor is None:
         factor = factorise((stiffness + shift * mass).tocsr(), solver)
-    still, _, _ = _orthonormal(np.zeros((stiffness.shape[0], 0)) if rigid is None else rigid, mass)
-    inverse, shapes = np.full(still.shape[1], 1 / shift), still
-    if count > still.shape[1]:
+    rigid_basis, _, _ = _orthonormal(np.zeros((stiffness.shape[0], 0)) if rigid is None else rigid, mass)
+    inverse, shapes = np.full(rigid_basis.shape[1], 1 / shift), rigid_basis
+    if count > rigid_basis.shape[1]:
         width = min(WIDTH, stiffness.shape[0])
-        more = _krylov(factor, mass, width, still=still, allowed=allowed[still.shape[1] :])
+        more = _krylov(factor, mass, width, rigid_basis=rigid_basis, allowed=allowed[rigid_basis.shape[1] :])
         inverse, shapes = np.concatenate([inverse, more[0]]), np.concatenate([shapes, more[1]], axis=1)
         del more
     if len(inverse) < least:
@@ -154,10 +154,11 @@ def _ritz(stiffness: Any, mass: Any, shapes: Array) -> tuple[Array, Array]:
     return values, combined(shapes, turn)
 
 
-def _krylov(factor: Factorisation, mass: Any, width: int, *, still: Array, allowed: Array) -> tuple[Array, Array]:
+def _krylov(factor: Factorisation, mass: Any, width: int, *, rigid_basis: Array, allowed: Array) -> tuple[Array, Array]:
     """The greatest eigenvalues of A^-1 M to residuals `allowed` (count,), and their vectors (n, count).
 
-    Orthonormal with the mass; fewer where it has a lower rank. Vectors `still` (n, r), orthonormal too, are left out.
+    Orthonormal with the mass; fewer where it has a lower rank. Vectors `rigid_basis` (n, r), orthonormal too, are left
+    out.
 
     Block Lanczos with full reorthogonalisation (Grimes, Lewis, Simon 1994, doi:10.1137/S0895479888151111), without
     restarts: a factor takes far more memory than the basis. An eigenvalue that comes as often as the blocks are wide
@@ -168,11 +169,11 @@ def _krylov(factor: Factorisation, mass: Any, width: int, *, still: Array, allow
     same = max(SAME, *allowed[wanted])
     generator = np.random.default_rng(SEED)
     last = factor.solve(mass @ generator.standard_normal((n, width)))
-    last -= combined(still, still.T @ (mass @ last))
+    last -= combined(rigid_basis, rigid_basis.T @ (mass @ last))
     last, momentum, _ = _orthonormal(last, mass)
     before, rows = np.zeros((n, 0)), np.zeros((last.shape[1], 0))
     basis, projected = [last], np.zeros((0, 0))  # as blocks: to join them would take them twice
-    for _ in range(MOST_STEPS // width):
+    for _ in range(MAX_STEPS // width):
         image = factor.solve(momentum)
         corner = momentum.T @ image
         corner = (corner + corner.T) / 2
@@ -185,7 +186,7 @@ def _krylov(factor: Factorisation, mass: Any, width: int, *, still: Array, allow
         image -= combined(last, corner)
         image -= combined(before, rows.T)
         moved = product(mass, image)
-        for block in (still, *basis):
+        for block in (rigid_basis, *basis):
             image -= combined(block, block.T @ moved)
         before = last
         last, momentum, rows = _orthonormal(image, mass, nothing=NOTHING * size)
@@ -193,12 +194,12 @@ def _krylov(factor: Factorisation, mass: Any, width: int, *, still: Array, allow
         values, vectors = np.linalg.eigh(projected)
         values, vectors = values[::-1][:count], vectors[:, ::-1][:, :count]
         converged = np.linalg.norm(rows @ vectors[old:], axis=0) <= allowed[: len(values)] * values
-        whole = not last.shape[1]
-        found = values if whole else values[converged & wanted[: len(values)]]
+        closed = not last.shape[1]
+        found = values if closed else values[converged & wanted[: len(values)]]
         often = max((int(np.count_nonzero(np.abs(found / value - 1) < same)) for value in found), default=0)
         if width <= often < count and width < n:
-            return _krylov(factor, mass, 2 * width, still=still, allowed=allowed)
-        if whole or (len(values) == count and np.all(converged)):
+            return _krylov(factor, mass, 2 * width, rigid_basis=rigid_basis, allowed=allowed)
+        if closed or (len(values) == count and np.all(converged)):
             shapes = np.empty((n, len(values)), order="F")
             for begin in range(0, n, ROWS):
                 here = slice(begin, begin + ROWS)

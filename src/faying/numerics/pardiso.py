@@ -67,30 +67,32 @@ class Pardiso:
         matrix: the matrix, or a function that makes it, so that nobody holds it while it is factorised.
         kind: POSITIVE or INDEFINITE.
         single: whether in single precision.
-        kept: unknowns (t,) that are not eliminated; None eliminates all.
+        not_eliminated: unknowns (t,) that are not eliminated; None eliminates all.
     """
 
     name = "PARDISO"
 
-    def __init__(self, matrix: Any, kind: int = POSITIVE, *, single: bool = False, kept: Index | None = None) -> None:
+    def __init__(
+        self, matrix: Any, kind: int = POSITIVE, *, single: bool = False, not_eliminated: Index | None = None
+    ) -> None:
         self._kind, self._type = kind, np.dtype(np.float32 if single else np.float64)
         if callable(matrix):
             matrix = matrix()
         matrix.sum_duplicates()  # and sorts the indices
         self._size = matrix.shape[0]
-        self._block = BLOCK if kept is None and _in_blocks(matrix) else 1
+        self._block = BLOCK if not_eliminated is None and _in_blocks(matrix) else 1
         bare = np.flatnonzero(np.diff(matrix.indptr) == 0)
         if len(bare):
             raise NotConverged(f"{len(bare)} unknowns have no stiffness at all; is a part free to move?")
         blocks = self._in_nodes(matrix)
         rows = np.repeat(np.arange(len(blocks.indptr) - 1, dtype=np.int32), np.diff(blocks.indptr))
-        self._kept = blocks.indices >= rows
-        if self._kept.sum() * self._block**2 > np.iinfo(np.int32).max:
+        self._upper = blocks.indices >= rows
+        if self._upper.sum() * self._block**2 > np.iinfo(np.int32).max:
             raise InputError("the matrix has more than 2^31 entries; use faying modes --mpi PROCESSES")
-        counts = np.bincount(rows[self._kept], minlength=len(blocks.indptr) - 1)
+        counts = np.bincount(rows[self._upper], minlength=len(blocks.indptr) - 1)
         self._starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-        self._columns = blocks.indices[self._kept].astype(np.int32)
-        self._values = np.asarray(blocks.data[self._kept], dtype=self._type).ravel()
+        self._columns = blocks.indices[self._upper].astype(np.int32)
+        self._values = np.asarray(blocks.data[self._upper], dtype=self._type).ravel()
         del matrix, blocks, rows
         self._state, self._iparm = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
         iparm = self._iparm
@@ -100,9 +102,9 @@ class Pardiso:
         iparm[27] = int(single)
         iparm[34] = 1  # indices from 0
         iparm[36] = self._block if self._block > 1 else 0  # blocks of one node: a third of the graph to order
-        self._order = np.zeros(1 if kept is None else self._size, dtype=np.int32)
-        if kept is not None:
-            self._order[kept] = 1
+        self._order = np.zeros(1 if not_eliminated is None else self._size, dtype=np.int32)
+        if not_eliminated is not None:
+            self._order[not_eliminated] = 1
             iparm[35] = 2  # a Schur complement, and solutions by halves
         self._call(ANALYSE)
         self.memory = max(float(iparm[14]), float(iparm[15]) + float(iparm[16])) * 1024
@@ -111,9 +113,11 @@ class Pardiso:
         except InputError:
             self._call(FORGET)
             raise
-        # what eliminating all others makes of the unknowns that are kept
-        self.schur = np.zeros((0, 0) if kept is None else (len(kept), len(kept)), dtype=self._type)
-        self._call(FACTORISE, None if kept is None else np.zeros(self._size, dtype=self._type), self.schur)
+        # what eliminating all others makes of the unknowns that are not_eliminated
+        self.schur = np.zeros(
+            (0, 0) if not_eliminated is None else (len(not_eliminated), len(not_eliminated)), dtype=self._type
+        )
+        self._call(FACTORISE, None if not_eliminated is None else np.zeros(self._size, dtype=self._type), self.schur)
 
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
@@ -123,8 +127,8 @@ class Pardiso:
         return x.astype(float, copy=False)
 
     def again(self, matrix: Any) -> "Pardiso":
-        """Factorise another matrix of the same pattern, indices sorted; the analysis is kept."""
-        self._values = np.asarray(self._in_nodes(matrix).data[self._kept], dtype=self._type).ravel()
+        """Factorise another matrix of the same pattern, indices sorted; the analysis is not_eliminated."""
+        self._values = np.asarray(self._in_nodes(matrix).data[self._upper], dtype=self._type).ravel()
         self._call(FACTORISE)
         return self
 

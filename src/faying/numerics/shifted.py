@@ -25,7 +25,7 @@ class Shifted:
         """Times one vector (n,) or several (n, m)."""
         return np.asarray(self.stiffness @ vectors + self.shift * (self.mass @ vectors))
 
-    def whole(self) -> Any:
+    def assembled(self) -> Any:
         """The sum as CSR."""
         return (self.stiffness + self.shift * self.mass).tocsr()
 

@@ -35,7 +35,7 @@ class Single:
         self._rigid = rigid @ np.linalg.inv(np.linalg.cholesky((gram + gram.T) / 2)).T
         self._momentum, self._shift = np.asarray(mass @ self._rigid), matrix.shift
         self._factor: Factorisation = (
-            Pardiso(matrix.whole, single=True) if maker is None else maker.factorise(matrix, single=True)
+            Pardiso(matrix.assembled, single=True) if maker is None else maker.factorise(matrix, single=True)
         )
         self.name, self.memory = self._factor.name, self._factor.memory
         if maker is not None and maker.cheap:  # what solves step by step sees its own residual
@@ -76,4 +76,4 @@ def factorise_roughly(matrix: Shifted, *, rigid: Array, solver: str | Factoriser
             return Single(matrix, rigid)
         except NotConverged:
             pass  # before the other is made, this one is gone
-    return factorise(matrix.whole(), solver)
+    return factorise(matrix.assembled(), solver)

@@ -9,14 +9,14 @@ from faying.typing import Array
 
 CLOSE = 1e-14  # of what is orthonormal: overlap up to which it is
 ROWS = 10_000  # that are combined at a time
-FEW, LITTLE = 8, 2_000_000  # vectors, or numbers, that are worked on together: the larger
-AHEAD, RESERVED = 10, 24_000_000  # times the first columns, or numbers, for which there is room: the smaller
+CHUNK_VECTORS, CHUNK_NUMBERS = 8, 2_000_000  # vectors, or numbers, that are worked on together: the larger
+ROOM_FACTOR, ROOM_NUMBERS = 10, 24_000_000  # times the first columns, or numbers, for which there is room: the smaller
 ROUNDING = 1e-13  # of the largest: squares of directions below it are rounding
 
 
-def few(size: int, count: int) -> list[slice]:
+def chunks(size: int, count: int) -> list[slice]:
     """Slices of `count` vectors (size,), as many at a time as take little room: work takes some times that."""
-    width = max(FEW, LITTLE // size)
+    width = max(CHUNK_VECTORS, CHUNK_NUMBERS // size)
     return [slice(k, k + width) for k in range(0, count, width)]
 
 
@@ -39,8 +39,8 @@ def extension(new: Array, basis: Array, image: Array, operator: Any, *, least: f
     new = new @ _directions(new.T @ (operator @ new), least)
     new = new - basis @ (image.T @ new)  # what rounding leaves of the first pass
     moved = np.asarray(operator @ new)
-    mend = _inverse_root(new.T @ moved)  # a direction that was small has lost digits of its size
-    return new @ mend, moved @ mend
+    correction = _inverse_root(new.T @ moved)  # a direction that was small has lost digits of its size
+    return new @ correction, moved @ correction
 
 
 def _directions(gram: Array, least: float) -> Array:
@@ -80,7 +80,7 @@ class Span:
     def __init__(self, mass: Any, stiffness: Any, first: Array) -> None:
         self.mass, self.stiffness = mass, stiffness
         self._columns = GrowingColumns(first)
-        parts = [self.vectors.T @ product(stiffness, self.vectors[:, some]) for some in few(*self.vectors.shape)]
+        parts = [self.vectors.T @ product(stiffness, self.vectors[:, some]) for some in chunks(*self.vectors.shape)]
         self.small: Array = np.concatenate([np.zeros((self.vectors.shape[1], 0)), *parts], axis=1)
 
     @property
@@ -110,11 +110,11 @@ class Span:
             new = new - combined(basis, left)
             corner += left.T @ known - left.T @ side - side.T @ left
             side = side - known
-        mend = _inverse_root(gram)
-        side, corner = side @ mend, mend @ corner @ mend
+        correction = _inverse_root(gram)
+        side, corner = side @ correction, correction @ corner @ correction
         self.small = np.block([[self.small, side], [side.T, (corner + corner.T) / 2]])
         del basis  # or the columns could not grow where they are
-        self._columns.add(combined(new, mend))
+        self._columns.add(combined(new, correction))
         return int(new.shape[1])
 
     def turn(self, rotation: Array) -> None:
@@ -129,10 +129,10 @@ class GrowingColumns:
     ahead: times the first columns, for which there is room from the beginning.
     """
 
-    def __init__(self, first: Array, *, ahead: int = AHEAD) -> None:
+    def __init__(self, first: Array, *, ahead: int = ROOM_FACTOR) -> None:
         self._size, self._used = first.shape
         # column by column; what is not written yet takes no memory
-        self._numbers = np.empty(max(first.size, min(ahead * first.size, RESERVED)))
+        self._numbers = np.empty(max(first.size, min(ahead * first.size, ROOM_NUMBERS)))
         self.values[:] = first
 
     @property

@@ -138,7 +138,7 @@ class Reduction:
             weights=[interface.weights for interface in self.interfaces],
             gaps=[interface.gap for interface in self.interfaces],
             static_stiffness=self.static.small[0],
-            static_loads=self.static.seen[0].T,
+            static_loads=self.static.at_rows[0].T,
             static_relative=self.static.relative,
             dynamic_stiffness=self.dynamic.small[0],
             dynamic_mass=self.dynamic.small[1],
@@ -179,7 +179,7 @@ class Reduction:
             stiffness=structure.coupled(springs)[0], mass=structure.dynamic_matrices[1], shift=float(kept["shift"])
         )
         factor = factorise_roughly(shifted, rigid=structure.rigid, solver=solver)
-        made = cls(structure, factor=factor, reference=shifted.whole(), shares=shares)
+        made = cls(structure, factor=factor, reference=shifted.assembled(), shares=shares)
         made._reference = kept["reference"], float(kept["shift"])
         made.static.append(kept["static"])
         made.dynamic.append(kept["dynamic"])
@@ -197,7 +197,7 @@ class Reduction:
             supported_stiffness=np.stack(self.static.small[1:]),
             stiffness=np.stack(self.dynamic.small[2 : 2 + count]),
             mass=np.stack(self.dynamic.small[2 + count :]),
-            cross=np.stack(self.dynamic.seen),
+            cross=np.stack(self.dynamic.at_rows),
             corner=np.stack([momentum @ self.dynamic.rigid for momentum in self._pushed]),
         )
 
@@ -235,7 +235,7 @@ class Reduction:
         made = cls.about(
             structure,
             factor=factorise_roughly(shifted, rigid=structure.rigid, solver=solver),
-            reference=shifted.whole(),
+            reference=shifted.assembled(),
             state=found.displacement,
             shapes=modes.shapes[:, rigid_count:],
             count=count,

@@ -14,7 +14,7 @@ from faying.contact.law import ContactLaw
 from faying.contact.mates import line_of
 from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError, InputError
-from faying.joint.clamping import BESIDE, seat_ring
+from faying.joint.clamping import SEAT_REACH, seat_ring
 from faying.joint.joint_law import JointLaw
 from faying.joint.strength import SolidPlace
 from faying.materials import Material
@@ -88,7 +88,7 @@ def law_reach(
         if not np.isfinite(pair.hardness):
             return None, "half-space", None
         given: dict[str, Any] = {} if solved else dict(choice.given)
-        return HalfSpace(scan=scan, pair=pair, **given).asked[1], "half-space", None
+        return HalfSpace(scan=scan, pair=pair, **given).pressure_ends[1], "half-space", None
     made = choice.make(surface, rough, other)
     law = JointLaw(model=made.law, tangential=joint.tangential, nu=rough.nu)
     law.check()
@@ -161,7 +161,7 @@ def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | Solid
         beside = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
         level = float(np.median(depth))
         ring = seat_ring(sketch.mesh, place) if isinstance(place, BoltPlace) else None
-        within = _inside(corners, place) or (ring is not None and beside.min() <= BESIDE * ring[1])
+        within = _inside(corners, place) or (ring is not None and beside.min() <= SEAT_REACH * ring[1])
         if 0 < level < place.length and within:
             out.append((place, level))
     return out

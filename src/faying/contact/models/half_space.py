@@ -121,7 +121,7 @@ class HalfSpace(ContactLaw):
         flag(self.periodic, "half-space: periodic")
         _check_map(self.scan)
         object.__setattr__(self, "points", int(self.points))  # the command line reads numbers as floats
-        low, high = self.asked
+        low, high = self.pressure_ends
         if not 0 < low < high < np.inf:
             raise InputError(f"half-space: pressures from {low:.4g} to {high:.4g} Pa; give 0 < lowest < highest")
         if self._hardness is not None and high >= self._hardness:
@@ -138,7 +138,7 @@ class HalfSpace(ContactLaw):
         return float(self.series.pressure[0]), float(self.series.pressure[-1])
 
     @property
-    def asked(self) -> tuple[float, float]:
+    def pressure_ends(self) -> tuple[float, float]:
         """Least and greatest pressure to solve [Pa]; by default 1e-5 and 0.9 of the hardness.
 
         Where spots are the harder the smaller they are, 0.55 of that of the bulk.
@@ -262,7 +262,7 @@ class HalfSpace(ContactLaw):
         """The numbers of the contacts at rising pressures, solved on first use or read from the cache."""
         heights = np.asarray(self.scan.heights, dtype=float)
         names = ("elastic", "stiffness", "area", "shear_ratio", "periodic", "points", "tol")
-        key = self._key(names) | {"pressure": self.asked}
+        key = self._key(names) | {"pressure": self.pressure_ends}
         if self.shear_ratio > 0:
             key["friction"] = self.pair.friction
 
@@ -270,7 +270,7 @@ class HalfSpace(ContactLaw):
             return solve_series(
                 heights,
                 self.scan.spacing,
-                np.geomspace(*self.asked, self.points),
+                np.geomspace(*self.pressure_ends, self.points),
                 self._solve,
                 self._numbers,
                 self.progress,
@@ -337,7 +337,7 @@ class HalfSpace(ContactLaw):
         """What the solved contacts cover; what is asked of them as long as none is solved."""
         if "series" in vars(self):
             return super()._reach()
-        low, high = self.asked
+        low, high = self.pressure_ends
         return f"from {show(low, 'Pa')} to {show(high, 'Pa')} at most; contacts are solved on first use"
 
     def _assumed(self) -> tuple[str, ...]:

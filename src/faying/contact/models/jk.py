@@ -370,8 +370,8 @@ class JK(ContactLaw):
         normal, tangential = self._capacity(parts["energy_n"]), self._capacity(self._energy_t(parts))
         if self.loss == "literal":
             return normal, tangential
-        held = al >= self.limits[0]
-        return np.where(held, self._end_damping[0], normal), np.where(held, self._end_damping[1], tangential)
+        loaded = al >= self.limits[0]
+        return np.where(loaded, self._end_damping[0], normal), np.where(loaded, self._end_damping[1], tangential)
 
     @property
     def assumptions(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from faying import units
 from faying.contact.build import find
 from faying.errors import InputError
-from faying.joint.modal import MOST_MODES
+from faying.joint.modal import MAX_MODES
 from faying.measured.ring_down import MeasuredBackbone
 from faying.study.declaration.declared import (
     NUMBER,
@@ -130,7 +130,7 @@ def _rest(value: Any, name: str) -> float | str:
 
 
 BACKBONE: Declared = {
-    "mode": count("Elastic mode, from 1.", 1, most=MOST_MODES),
+    "mode": count("Elastic mode, from 1.", 1, most=MAX_MODES),
     "amplitude": own(
         'two accelerations, for example ["0.1 m/s^2", "60 m/s^2"]',
         listed(QUANTITY, 2, 2),

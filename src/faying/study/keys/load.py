@@ -6,8 +6,8 @@ from typing import Any
 from faying.errors import InputError
 from faying.loads.load import (
     COLDEST,
-    MOST_FACTOR,
-    MOST_INCREMENTS,
+    MAX_FACTOR,
+    MAX_INCREMENTS,
     NOTHING,
     WARMEST,
     Displacement,
@@ -182,15 +182,15 @@ LOAD: Declared = {
         'factors by load, for example {"10 g" = 1.5}',
         {
             "type": "object",
-            "additionalProperties": {"type": "number", "minimum": -MOST_FACTOR, "maximum": MOST_FACTOR},
+            "additionalProperties": {"type": "number", "minimum": -MAX_FACTOR, "maximum": MAX_FACTOR},
         },
         "Factors by the names of other cases, whose loads act here too.",
         {},
         read=_factors,
-        allowed=f"{-MOST_FACTOR:g} to {MOST_FACTOR:g}",
+        allowed=f"{-MAX_FACTOR:g} to {MAX_FACTOR:g}",
     ),
     "after": text("Case from whose state this one starts: its load gives way to this one. The preload where left out."),
     "increments": count(
-        "Into how many parts the way to the load is cut where a joint has friction.", 4, most=MOST_INCREMENTS
+        "Into how many parts the way to the load is cut where a joint has friction.", 4, most=MAX_INCREMENTS
     ),
 }

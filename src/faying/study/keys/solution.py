@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from faying.errors import InputError
-from faying.joint.modal import MOST_MODES, SOLVERS, ModesChoice
+from faying.joint.modal import MAX_MODES, SOLVERS, ModesChoice
 from faying.study.declaration.declared import (
     QUANTITY,
     REQUIRED,
@@ -104,7 +104,7 @@ def read_order(table: Table | None, names: Sequence[str]) -> tuple[int, ...] | N
 
 
 MODES: Declared = {
-    "count": count("Number of elastic modes.", 10, most=MOST_MODES),
+    "count": count("Number of elastic modes.", 10, most=MAX_MODES),
     "damping": text(
         (
             "Loss of the joints: the same energy per cycle at every frequency, or dampers as in the "
