@@ -6,10 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from faying.errors import InputError
-from faying.files import is_sealed, write_arrays
+from faying.files import load_arrays, write_arrays
 
 FOLDER = ".faying"  # beside a scan it keeps solved contacts, beside a STEP file meshes; it can be deleted at any time
 
@@ -34,7 +32,7 @@ def kept(
         return make()
     digest = hashlib.sha256(key.encode() + data).hexdigest()
     file = place / f"{kind}-{digest[:24]}.npz"
-    found = _read(file)
+    found = load_arrays(file)
     if found is not None:
         return found
     arrays = make()
@@ -44,14 +42,3 @@ def kept(
     except (InputError, OSError):
         pass
     return arrays
-
-
-def _read(file: Path) -> dict[str, Any] | None:
-    """The arrays of a file; None where there is none, or it is not as it was written."""
-    try:
-        if not is_sealed(file):
-            return None
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
-            return dict(data.items())
-    except (OSError, ValueError, KeyError, EOFError):
-        return None

@@ -72,7 +72,8 @@ def read_columns(
             refuse_decimal_comma(line, f"{path}, line {number}")
     if _is_number(_cells(head, mark)[0]):
         raise ReadError(f"{path}, line {first}: no head with the names of the columns; {form}")
-    reader = _Head(known, form, examples or {}, passed_over, f"{path}, line {first}")
+    where = f"{path}, line {first}"
+    reader = _Head(known=known, passed_over=passed_over, form=form, examples=examples or {}, where=where)
     columns = [reader.column(one) for one in _cells(head, mark)]
     names = [name for name, _ in columns]
     for name in names:
@@ -112,25 +113,21 @@ def _too_large(column: Array, unit: str) -> int | None:
     return int(found[0]) if found.size else None
 
 
+@dataclass(frozen=True, kw_only=True)
 class _Head:
-    """What the cells of a head may say."""
+    """What the cells of a head may say; arguments as of `read_columns`, where: file and line."""
 
-    def __init__(
-        self,
-        known: Mapping[str, str],
-        form: str,
-        examples: Mapping[str, str],
-        passed_over: Collection[str],
-        where: str,
-    ) -> None:
-        self.known, self.form, self.examples = known, form, examples
-        self.where = where
-        self.names = {name.lower().replace("_", " "): name for name in (*known, *passed_over)}
+    known: Mapping[str, str]
+    passed_over: Collection[str]
+    form: str
+    examples: Mapping[str, str]
+    where: str
 
     def column(self, text: str) -> tuple[str, float]:
         """Name and factor to SI of one cell."""
         part = cell(text)
-        name, unit = self.names.get(part.name), part.unit
+        names = {name.lower().replace("_", " "): name for name in (*self.known, *self.passed_over)}
+        name, unit = names.get(part.name), part.unit
         if name is None:
             raise ReadError(
                 f'{self.where}: the column "{text}" is unknown; the known ones are {", ".join(self.known)}; {self.form}'

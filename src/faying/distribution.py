@@ -307,12 +307,8 @@ def _forms(unit: str) -> str:
     """The short forms for a unit."""
     example = units.EXAMPLES.get(unit, f"1 {unit}") if unit else "0.3"
     number, _, word = example.partition(" ")
-    ends = f"{example} to {_round(1.5 * float(number))} {word}" if word else "0.1 to 0.6"
+    ends = f"{example} to {1.5 * float(number):.3g} {word}" if word else "0.1 to 0.6"
     return f'write for example "{example} +- 5 %" (normal) or "{ends}" (uniform)'
-
-
-def _round(value: float) -> str:
-    return f"{value:.3g}"
 
 
 def _number(value: object, unit: str, name: str) -> float:

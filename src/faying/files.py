@@ -25,7 +25,8 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         write(temporary)
-        _flush(temporary)
+        with temporary.open("rb+") as file:  # on the disk before it is renamed, so that a power cut finds it whole
+            os.fsync(file.fileno())
         os.replace(temporary, path)
     except OSError as fault:
         raise InputError(f"cannot write {path}: {fault.strerror or fault}") from None
@@ -73,13 +74,23 @@ def write_arrays(path: Path, arrays: Mapping[str, Any], *, seal: bool = True) ->
                 with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
                     np.lib.format.write_array(file, np.asanyarray(array), allow_pickle=False)
         if seal:
-            digest = hashlib.sha256()
             with temporary.open("rb+") as file:
-                while block := file.read(1 << 20):
-                    digest.update(block)
-                file.write(SEAL + digest.hexdigest().encode())
+                file.write(SEAL + hashlib.file_digest(file, "sha256").hexdigest().encode())
 
     return write_atomically(path, fill)
+
+
+def load_arrays(path: Path) -> dict[str, Any] | None:
+    """The arrays of a file of `write_arrays`, None where it is missing or not as it was written."""
+    import numpy as np
+
+    try:
+        if not is_sealed(path):
+            return None
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as data:
+            return dict(data.items())
+    except (OSError, ValueError, EOFError, KeyError):
+        return None
 
 
 def write_text(path: Path, text: str) -> Path:
@@ -94,12 +105,6 @@ def make_folder(folder: Path, remedy: str) -> Path:
     except OSError as fault:
         raise InputError(f"cannot make the folder {folder}: {fault.strerror}; {remedy}") from None
     return folder
-
-
-def _flush(path: Path) -> None:
-    """Wait until a file is on the disk, so that a power cut after the renaming finds it whole."""
-    with path.open("rb+") as file:
-        os.fsync(file.fileno())
 
 
 @contextmanager

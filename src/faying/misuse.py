@@ -14,6 +14,7 @@ from faying.errors import InputError
 from faying.typing import Array
 
 Target = TypeVar("Target", bound=Callable[..., Any])
+VARIADIC = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
 WORDS = {
     str: "text",
     float: "a number",
@@ -59,8 +60,7 @@ def _signature(function: Any) -> tuple[inspect.Signature, dict[str, Any]]:
     signature = inspect.signature(function)
     hints = {}
     for key, parameter in signature.parameters.items():
-        plain = parameter.kind not in (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
-        if not plain or parameter.annotation is inspect.Parameter.empty:
+        if parameter.kind in VARIADIC or parameter.annotation is inspect.Parameter.empty:
             continue
         hint = parameter.annotation
         if isinstance(hint, str):
@@ -78,7 +78,7 @@ def _wrong_call(name: str, signature: inspect.Signature, kwargs: Mapping[str, An
         key
         for key in known
         if signature.parameters[key].default is inspect.Parameter.empty
-        and signature.parameters[key].kind not in (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+        and signature.parameters[key].kind not in VARIADIC
     ]
     unknown = [key for key in kwargs if key not in known]
     if unknown:

@@ -77,7 +77,7 @@ def tree(path):
 
 def arrays(path):
     from faying import ReadError
-    from faying.study.part_folder import load_arrays
+    from faying.files import load_arrays
 
     found = load_arrays(Path(path))
     if found is None:

@@ -8,7 +8,7 @@ import pytest
 import faying
 from faying.bolt.bolt import Bolt
 from faying.fe.interface import join
-from faying.files import write_arrays
+from faying.files import load_arrays, write_arrays
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
@@ -17,7 +17,6 @@ from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes
 from faying.reduction.part_shares import PartShares
 from faying.reduction.reduce import STATIC_SHARE, Reduction
-from faying.study.part_folder import load_arrays
 from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]

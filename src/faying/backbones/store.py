@@ -4,9 +4,9 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from faying.files import write_arrays
+from faying.files import load_arrays, write_arrays
 from faying.microslip.epmc import EpmcPoint
-from faying.study.part_folder import PartFile, load_arrays
+from faying.study.part_folder import PartFile
 from faying.typing import Array
 
 LISTS = ("sliding", "opening", "dissipated", "traction")  # one array for each joint

@@ -261,18 +261,8 @@ class Bolt:
                 f"bolt {self.name!r}: its shank is {show(self.shank, 'm')} long, but its thread begins to engage "
                 f"{show(place.free, 'm')} below its head; give a length from 0 to that"
             )
-        return FittedBolt(
-            bolt=self,
-            free=place.free,
-            E_tapped=tapped,
-            point=point,
-            axis=place.axis,
-            length=place.length,
-            ends=ends,
-            ring=seat,
-            extent=seat or _extent(mesh.points[mesh.face_nodes(self.faces[0])], point, place.axis),
-            thread=place.thread,
-        )
+        extent = seat or _extent(mesh.points[mesh.face_nodes(self.faces[0])], point, place.axis)
+        return FittedBolt(**vars(place), ends=ends, extent=extent, E_tapped=tapped)
 
     def placed(self, mesh: NamedFaces) -> "BoltPlace":
         """Return where the bolt lies.
@@ -429,6 +419,13 @@ def _mass(given: float | str, name: str) -> float:
     return value
 
 
+def frame_about(axis: Array) -> Array:
+    """Unit vectors (3, 3): an axis, and two across it."""
+    second = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    second /= np.linalg.norm(second)
+    return np.stack([axis, second, np.cross(axis, second)])
+
+
 def _extent(points: Array, centre: Array, axis: Array) -> tuple[float, float]:
     arm = points - centre
     radius = np.linalg.norm(arm - np.outer(arm @ axis, axis), axis=1)
@@ -460,10 +457,21 @@ class BoltPlace:
     @property
     def notes(self) -> tuple[Note, ...]:
         """What was chosen for want of a seat, and of the length of its thread."""
-        return _chosen(self.bolt, self.ring, self.thread)
+        bolt, notes = self.bolt, []
+        if self.ring is not None and bolt.seat is None and not bolt.washers:
+            ring = " to ".join(show(d, "m") for d in self.ring)
+            text = f"bolt {bolt.name!r} has no seat: it presses a ring of {ring}, from its hole and its size"
+            notes.append(Note(code="bolt-seat", text=text))
+        if self.thread is not None and bolt.engaged is None:
+            length = show(self.thread.high, "m", digits=3)
+            text = f"bolt {bolt.name!r}: its thread engages {length} of its tapped hole; engaged gives another length"
+            notes.append(Note(code="bolt-thread", text=text))
+        if bolt.diameter is not None and bolt.fastener is None and bolt.thread is None:
+            notes += _thread_notes(bolt, bolt.metric)
+        return tuple(notes)
 
 
-def _meet(one: "BoltPlace | FittedBolt", other: "BoltPlace | FittedBolt") -> bool:
+def _meet(one: BoltPlace, other: BoltPlace) -> bool:
     """Whether two bolts run through one place: parallel, on a common face, closer than their shanks are thick."""
     arm = other.point - one.point
     apart = float(np.linalg.norm(arm - (arm @ one.axis) * one.axis))
@@ -472,7 +480,7 @@ def _meet(one: "BoltPlace | FittedBolt", other: "BoltPlace | FittedBolt") -> boo
     return apart < thick and parallel and bool({*one.bolt.faces} & {*other.bolt.faces})
 
 
-def each_in_its_place(bolts: "Sequence[BoltPlace | FittedBolt]") -> None:
+def each_in_its_place(bolts: Sequence[BoltPlace]) -> None:
     """Raise InputError where two bolts run through one place."""
     for k, one in enumerate(bolts):
         for other in bolts[:k]:
@@ -495,58 +503,24 @@ def _thread_notes(bolt: Bolt, metric: Thread | None) -> list[Note]:
     return [Note(code="bolt-pitch", text=text)]
 
 
-def _chosen(bolt: Bolt, ring: tuple[float, float] | None, thread: DepthBand | None) -> tuple[Note, ...]:
-    notes = []
-    if ring is not None and bolt.seat is None and not bolt.washers:
-        inner, outer = (show(d, "m") for d in ring)
-        text = f"bolt {bolt.name!r} has no seat: it presses a ring of {inner} to {outer}, from its hole and its size"
-        notes.append(Note(code="bolt-seat", text=text))
-    if thread is not None and bolt.engaged is None:
-        length = show(thread.high, "m", digits=3)
-        text = f"bolt {bolt.name!r}: its thread engages {length} of its tapped hole; engaged gives another length"
-        notes.append(Note(code="bolt-thread", text=text))
-    if bolt.diameter is not None and bolt.fastener is None and bolt.thread is None:
-        notes += _thread_notes(bolt, bolt.metric)
-    return tuple(notes)
-
-
 @dataclass(frozen=True, kw_only=True)
-class FittedBolt:
-    """A bolt in its place.
+class FittedBolt(BoltPlace):
+    """A bolt in its place on a mesh.
 
-    point [m] and axis (3,): from head to nut; length [m]: clamped; ends: mean motions (6, unknowns) of both seats;
-    ring: inner and outer diameter [m] of the seats, None for whole faces; extent: the same, or the least and greatest
-    diameter of the whole first face about the axis; thread: what it engages of a tapped hole, None where it has a nut;
-    free: length [m] from under the head to where the thread engages, washers included; E_tapped: Young's modulus [Pa]
-    of the part that is tapped, None where the bolt has a nut.
+    ends: mean motions (6, unknowns) of both seats; extent: `ring`, or the least and greatest diameter [m] of the whole
+    first face about the axis; E_tapped: Young's modulus [Pa] of the part that is tapped, None where the bolt has a nut.
     """
 
-    bolt: Bolt
-    point: Array
-    axis: Array
-    length: float
     ends: tuple[Any, ...]
-    ring: tuple[float, float] | None
     extent: tuple[float, float]
-    free: float
-    thread: DepthBand | None = None
     E_tapped: float | None = None
-
-    @property
-    def notes(self) -> tuple[Note, ...]:
-        """What was chosen for want of a seat, and of the length of its thread."""
-        return _chosen(self.bolt, self.ring, self.thread)
 
     @cached_property
     def motion(self) -> Any:
         """Sparse operator (12, unknowns): translation and rotation at the head, then at the nut, in the bolt's axes."""
         from scipy.sparse import block_diag, csr_array, vstack
 
-        helper = np.eye(3)[np.argmin(np.abs(self.axis))]
-        second = np.cross(self.axis, helper)
-        second /= np.linalg.norm(second)
-        frame = np.stack([self.axis, second, np.cross(self.axis, second)])
-        return csr_array(block_diag([csr_array(frame)] * 4) @ vstack(self.ends))
+        return csr_array(block_diag([csr_array(frame_about(self.axis))] * 4) @ vstack(self.ends))
 
     @property
     def seats(self) -> Array:

@@ -1,7 +1,7 @@
 """Dowels: pins that fit holes of several parts without play and carry shear, and no force along their axis."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from math import pi
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legint, legval
 
-from faying.bolt.bolt import solid_of
+from faying.bolt.bolt import frame_about, solid_of
 from faying.bolt.tapped import RoundHole, round_hole
 from faying.errors import InputError
 from faying.fe.elasticity import Solid
@@ -168,7 +168,7 @@ class DowelPlace:
                 f"dowel {self.dowel.name!r} is {show(high - low, 'm')} long and does not reach the hole {short!r}; "
                 "give other ends, or leave them out for a pin as long as its holes"
             )
-        return DowelPlace(**{**vars(self), "depths": depths})
+        return replace(self, depths=depths)
 
     @property
     def seats(self) -> Array:
@@ -178,10 +178,7 @@ class DowelPlace:
     @property
     def frame(self) -> Array:
         """Unit vectors (3, 3): the axis, and two across it."""
-        helper = np.eye(3)[np.argmin(np.abs(self.axis))]
-        second = np.cross(self.axis, helper)
-        second /= np.linalg.norm(second)
-        return np.stack([self.axis, second, np.cross(self.axis, second)])
+        return frame_about(self.axis)
 
 
 def _hole(mesh: NamedFaces, wall: str, name: str) -> tuple[RoundHole, float]:

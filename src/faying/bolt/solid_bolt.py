@@ -61,7 +61,7 @@ class SolidBolt:
                 "the head, then the one under the nut or round the thread"
             )
         axis = axis / length
-        place = (centre + end) / 2 if self.at is None else np.array(self.at)
+        place = self.place(mesh)
         before, behind = ((mesh.points[mesh.face_nodes(face)] - place) @ axis for face in self.faces)
         if before.max() > 0 or behind.min() <= 0:
             raise InputError(

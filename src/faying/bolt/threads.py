@@ -230,25 +230,23 @@ class Fastener:
             )
 
     @property
+    def _is_thick(self) -> bool:
+        return self.grade == "8.8" and self.thread.diameter > THICK
+
+    @property
     def proof_stress(self) -> float:
         """Stress under proof load [Pa]."""
-        thick = self.grade == "8.8" and self.thread.diameter > THICK
-        return PROOF_THICK if thick else PROOF[self.grade]
+        return PROOF_THICK if self._is_thick else PROOF[self.grade]
 
     @property
     def tensile_strength(self) -> float:
         """Least tensile strength R_m [Pa]."""
-        return self._strength[0]
+        return (STRENGTH_THICK if self._is_thick else STRENGTH[self.grade])[0]
 
     @property
     def yield_stress(self) -> float:
         """Least stress [Pa] at yield, or at 0.2 % of lasting elongation (0.0048 d for 4.8, 5.8 and 6.8)."""
-        return self._strength[1]
-
-    @property
-    def _strength(self) -> tuple[float, float]:
-        thick = self.grade == "8.8" and self.thread.diameter > THICK
-        return STRENGTH_THICK if thick else STRENGTH[self.grade]
+        return (STRENGTH_THICK if self._is_thick else STRENGTH[self.grade])[1]
 
     @property
     def proof_load(self) -> float:

@@ -94,6 +94,16 @@ class TouchingFaces:
     area: float
     gap: float
 
+    @property
+    def sides(self) -> tuple[tuple[str, int], tuple[str, int]]:
+        """Part and number of both faces."""
+        return self.first, self.second
+
+    @property
+    def parts(self) -> tuple[str, str]:
+        """Parts of both faces."""
+        return self.first[0], self.second[0]
+
 
 @dataclass(frozen=True, kw_only=True)
 class GeometryFacts:

@@ -100,33 +100,12 @@ class ModalComparison(Summary):
             interval = "-" if span is None else f"{span[t, 0]:.1e} .. {span[t, 1]:.1e}"
             m = partner.get(t)
             if m is None:
-                out.append(
-                    [
-                        str(t + 1),
-                        f"{f:.2f}",
-                        "-",
-                        "-",
-                        "-",
-                        f"{self.mac[t].max():.2f} at best",
-                        f"{loss:.2e}",
-                        interval,
-                        "-",
-                    ]
-                )
-                continue
-            out.append(
-                [
-                    str(t + 1),
-                    f"{f:.2f}",
-                    str(m + 1),
-                    f"{self.model.frequencies[m]:.2f}",
-                    f"{100 * (self.model.frequencies[m] / f - 1):+.2f}",
-                    f"{self.mac[t, m]:.3f}",
-                    f"{loss:.2e}",
-                    interval,
-                    f"{self.model.loss_factors[m]:.2e}",
-                ]
-            )
+                found, model_loss = ["-", "-", "-", f"{self.mac[t].max():.2f} at best"], "-"
+            else:
+                frequency, model_loss = self.model.frequencies[m], f"{self.model.loss_factors[m]:.2e}"
+                difference = f"{100 * (frequency / f - 1):+.2f}"
+                found = [str(m + 1), f"{frequency:.2f}", difference, f"{self.mac[t, m]:.3f}"]
+            out.append([str(t + 1), f"{f:.2f}", *found, f"{loss:.2e}", interval, model_loss])
         return out
 
     def csv_text(self) -> str:

@@ -63,6 +63,8 @@ def identified(found: Identified) -> Any:
 @drawing
 def mac_map(ax: Any, comparison: ModalComparison) -> Any:
     """Draw the MAC of test against model with its values; the pairs have a frame."""
+    from matplotlib.patches import Rectangle
+
     table = comparison.mac
     image = ax.imshow(table, cmap="Blues", vmin=0, vmax=1, aspect="equal")
     ax.figure.colorbar(image, ax=ax, label="MAC", shrink=0.8)
@@ -71,7 +73,7 @@ def mac_map(ax: Any, comparison: ModalComparison) -> Any:
             shade = "white" if table[t, m] > 0.6 else "0.2"
             ax.text(m, t, f"{table[t, m]:.2f}", ha="center", va="center", fontsize=SMALL, color=shade)
     for t, m in comparison.pairs:
-        ax.add_patch(_frame(int(m), int(t)))
+        ax.add_patch(Rectangle((m - 0.5, t - 0.5), 1, 1, fill=False, edgecolor=COLOURS[1], lw=1.8))
     ax.set_xticks(
         range(table.shape[1]),
         [f"{k + 1}: {f:.0f}" for k, f in enumerate(comparison.model.frequencies)],
@@ -84,12 +86,6 @@ def mac_map(ax: Any, comparison: ModalComparison) -> Any:
         title=f"MAC at {len(comparison.dofs)} degrees of freedom",
     )
     return ax
-
-
-def _frame(m: int, t: int) -> Any:
-    from matplotlib.patches import Rectangle
-
-    return Rectangle((m - 0.5, t - 0.5), 1, 1, fill=False, edgecolor=COLOURS[1], lw=1.8)
 
 
 @drawing

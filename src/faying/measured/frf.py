@@ -9,6 +9,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.misuse import checked_call, shortened
 from faying.style import Summary
+from faying.text import listed
 from faying.typing import Array, Complex
 
 Position = tuple[float, float, float]
@@ -61,11 +62,6 @@ def dofs(pairs: object) -> tuple[Dof, ...]:
     return tuple(out)
 
 
-def _shown(places: tuple[Dof, ...], most: int = 8) -> str:
-    """Degrees of freedom, the first few of them."""
-    return ", ".join(map(str, places[:most])) + (f" and {len(places) - most} more" if len(places) > most else "")
-
-
 @checked_call
 @dataclass(frozen=True, kw_only=True, repr=False)
 class FRF(Summary):
@@ -104,8 +100,8 @@ class FRF(Summary):
         measured = int(np.isfinite(self.values).all(axis=2).sum())
         rows = {
             "pairs": f"{measured} of {len(self.outputs)} outputs x {len(self.inputs)} inputs",
-            "outputs": _shown(self.outputs),
-            "inputs": _shown(self.inputs),
+            "outputs": listed(map(str, self.outputs), 8),
+            "inputs": listed(map(str, self.inputs), 8),
             "lines": f"{self.frequency.size}, {self.frequency[0]:.6g} to {self.frequency[-1]:.6g} Hz",
             "coherence": "none" if self.coherence is None else "given",
             "source": self.source or "given in Python",

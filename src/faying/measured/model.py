@@ -9,6 +9,7 @@ from faying.errors import InputError
 from faying.measured.frf import QUANTITIES
 from faying.misuse import checked_call, numbers
 from faying.style import Summary
+from faying.text import listed
 from faying.typing import Array, Complex, Index
 from faying.units import load_text
 
@@ -70,9 +71,8 @@ class ModelModes(Summary):
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and the first frequencies."""
-        shown = ", ".join(f"{f:.2f}" for f in self.frequencies[:8])
-        more = f" and {len(self.frequencies) - 8} more" if len(self.frequencies) > 8 else ""
-        rows = {"frequencies": f"{shown}{more} Hz", "points": str(len(self.points)), "source": self.source or "a run"}
+        shown = listed((f"{f:.2f}" for f in self.frequencies), 8)
+        rows = {"frequencies": f"{shown} Hz", "points": str(len(self.points)), "source": self.source or "a run"}
         return f"{len(self.frequencies)} modes of {self.title or 'a model'!r} at {load_text(self.load)}", rows
 
     def __post_init__(self) -> None:

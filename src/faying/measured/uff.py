@@ -100,8 +100,7 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         warnings=(
             *about_places,
             *about_results,
-            *_about_others(file, sets),
-            *_about_rigid_modes(file, sum(s["frequency"] == 0 for s in shapes)),
+            *_about_left_out(file, sets, sum(s["frequency"] == 0 for s in shapes)),
             *_about_lengths(file, positions, stated=units is not None or length_unit is not None),
         ),
     )
@@ -135,21 +134,18 @@ def _check_headers(lines: Sequence[str], file: Path) -> None:
                 )
 
 
-def _about_others(file: Path, sets: Sequence[dict[str, Any]]) -> tuple[str, ...]:
-    """A note on the data sets that are none of a test."""
+def _about_left_out(file: Path, sets: Sequence[dict[str, Any]], rigid: int) -> list[str]:
+    """Notes on the data sets that are none of a test, and on rigid modes; rigid: how many there are."""
     others = sorted({int(s["type"]) for s in sets} - TAKEN)
-    return (f"{file}: data sets {', '.join(map(str, others))} are not read",) if others else ()
+    notes = [f"{file}: data sets {', '.join(map(str, others))} are not read"] if others else []
+    return notes + ([f"{file}: {rigid} mode shapes at 0 Hz, rigid motion, are left out"] if rigid else [])
 
 
-def _about_rigid_modes(file: Path, count: int) -> tuple[str, ...]:
-    return (f"{file}: {count} mode shapes at 0 Hz, rigid motion, are left out",) if count else ()
-
-
-def _about_lengths(file: Path, positions: Mapping[int, Position], *, stated: bool) -> tuple[str, ...]:
+def _about_lengths(file: Path, positions: Mapping[int, Position], *, stated: bool) -> list[str]:
     """Notes on the unit of length, where the file states none or the points lie far apart."""
+    notes: list[str] = []
     if not positions:
-        return ()
-    notes = []
+        return notes
     size = float(np.linalg.norm(np.ptp(np.array(list(positions.values())), axis=0)))
     if not stated:
         notes.append(f"{file}: the file states no unit of length; metres are assumed (the points span {size:.3g} m)")
@@ -157,7 +153,7 @@ def _about_lengths(file: Path, positions: Mapping[int, Position], *, stated: boo
         notes.append(
             f'{file}: the points span {size:.3g} m; are they in mm? Then give length_unit="mm" (--length-unit mm)'
         )
-    return tuple(notes)
+    return notes
 
 
 def _sets(file: Path) -> list[dict[str, Any]]:
@@ -327,17 +323,14 @@ def _points(
             if label < 1:
                 raise ReadError(f"{where}: a point has the number {label}; numbers of points begin at 1")
             moved = known.get(own) if s["type"] == 15 else None
-            if s["type"] == 15 and known and own not in (*known, *GLOBAL):
-                raise ReadError(
-                    f"{where}: point {label} is given in the system {own}, which the file does not define; it defines "
-                    f"{', '.join(map(str, known))}"
-                )
-            if known and motion not in (*known, *GLOBAL):
-                raise ReadError(
-                    f"{where}: point {label} moves in the system {motion}, which the file does not define; it defines "
-                    f"{', '.join(map(str, known))}"
-                )
-            if any(system is not None and system.kind != 0 for system in (moved, known.get(motion))):
+            named = {"is given": own, "moves": motion} if s["type"] == 15 else {"moves": motion}
+            for does, system in named.items():
+                if known and system not in (*known, *GLOBAL):
+                    raise ReadError(
+                        f"{where}: point {label} {does} in the system {system}, which the file does not define; it "
+                        f"defines {', '.join(map(str, known))}"
+                    )
+            if any(one is not None and one.kind != 0 for one in (moved, known.get(motion))):
                 raise ReadError(
                     f"{file}: point {label} is given in a cylindrical or spherical system; export it in Cartesian ones"
                 )

@@ -84,18 +84,16 @@ def hertz(data: dict[str, Any], where: str) -> float:
         return 1 / (2 * pi)
     if text in ("rpm", "cpm", "1/min"):
         return 1 / 60
-    if text in ("khz", "mhz"):
-        return 1e3 if text == "khz" else _megahertz(label, where)
+    if text == "khz":
+        return 1e3
+    if label.strip() == "MHz":
+        return 1e6
+    if text == "mhz":
+        raise ReadError(f'{where}: the unit "{label.strip()}" of its abscissa may be MHz or mHz; export it over Hz')
     raise ReadError(
         f'{where}: the unit "{label.strip()}" of its abscissa is not a unit of frequency that Faying reads (Hz, kHz, '
         "rad/s, rpm); export it over Hz"
     )
-
-
-def _megahertz(label: str, where: str) -> float:
-    if label.strip() == "MHz":
-        return 1e6
-    raise ReadError(f'{where}: the unit "{label.strip()}" of its abscissa may be MHz or mHz; export it over Hz')
 
 
 def frf_scale(

@@ -76,9 +76,7 @@ def _nodes(positions: Mapping[int, Position]) -> dict[str, Any]:
         "def_cs": zero,
         "disp_cs": zero,
         "color": zero + 1,
-        "x": xyz[:, 0],
-        "y": xyz[:, 1],
-        "z": xyz[:, 2],
+        **dict(zip("xyz", xyz.T, strict=True)),
     }
 
 
@@ -112,9 +110,7 @@ def _shapes(modes: ModeSet) -> list[dict[str, Any]]:
             "load_case": 1,
             "mode_n": k + 1,
             "node_nums": points,
-            "r1": motion[:, 0],
-            "r2": motion[:, 1],
-            "r3": motion[:, 2],
+            **dict(zip(("r1", "r2", "r3"), motion.T, strict=True)),
         }
         if real:
             data |= {"freq": f, "modal_m": 0.0, "modal_damp_vis": loss / 2, "modal_damp_his": 0.0}

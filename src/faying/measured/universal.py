@@ -1,5 +1,6 @@
 """What a universal file of a modal test holds, as FRFs and as mode shapes."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -48,9 +49,7 @@ class UniversalFile(Summary):
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and what the file holds."""
-        kinds: dict[str, int] = {}
-        for one in self.functions:
-            kinds[one.kind] = kinds.get(one.kind, 0) + 1
+        kinds = Counter(one.kind for one in self.functions)
         rows = {
             "functions": ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none",
             "shapes": str(len(self.shapes)),

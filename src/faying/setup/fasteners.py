@@ -2,11 +2,13 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import permutations
 from math import pi
 
 import numpy as np
 
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, TouchingFaces
+from faying.text import listed
 from faying.typing import Array
 
 SLENDER = 1.5  # shank diameters from its axis, beyond which a part with a shank is not a bolt (but a spigot, say)
@@ -70,21 +72,20 @@ class Fasteners:
         out = []
         if self.dowels:
             out.append(
-                f"{listed(pin.part for pin in self.dowels)}: dowels, which carry only shear. Left out of the mesh "
+                f"{quoted(pin.part for pin in self.dowels)}: dowels, which carry only shear. Left out of the mesh "
                 "(geometry.leave_out); a [[dowel]] stands for each"
             )
         if self.others:
             out.append(
-                f"{listed(self.others)}: bolts, studs or nuts without one flat face under the head and one at the nut. "
+                f"{quoted(self.others)}: bolts, studs or nuts without one flat face under the head and one at the nut. "
                 "Left out of the mesh (geometry.leave_out); beams stand for those whose holes are found"
             )
         return out
 
 
-def listed(names: Iterable[str], most: int = 4) -> str:
+def quoted(names: Iterable[str]) -> str:
     """Names in quotes, the first few."""
-    every = [repr(name) for name in names]
-    return ", ".join(every[:most]) + (f" and {len(every) - most} more" if len(every) > most else "")
+    return listed(map(repr, names), 4)
 
 
 def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fasteners:
@@ -97,7 +98,7 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
     pairs = [
         (facts.face(*one), facts.face(*two), contact.gap)
         for contact in facts.contacts
-        for one, two in ((contact.first, contact.second), (contact.second, contact.first))
+        for one, two in permutations(contact.sides)
         if facts.face(*one).kind == "cylinder" and not facts.face(*one).hole
     ]
     meshed, dowels, others = [], [], []
@@ -114,13 +115,13 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
             meshed.append(MeshedBolt(part=part.name, shank=shank, head=head, nut=nut))
             continue
         tight = {hole.part for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0)}
-        if not low and not high and len(tight) > 1 and not _nuts(facts, mine):
+        if not low and not high and len(tight) > 1 and not any(_is_nut(facts, *pair) for pair in mine):
             holes = tuple(hole for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0))
             dowels.append(_pin(facts, part, shank, holes))
         else:
             others.append(part.name)
             shafts.append(shank)
-    nuts = [hole.part for shank, hole, gap in pairs if shank in shafts and _is_nut(facts, shank, hole, gap)]
+    nuts = [pair[1].part for pair in pairs if pair[0] in shafts and _is_nut(facts, *pair)]
     owners = {*(bolt.part for bolt in meshed), *(pin.part for pin in dowels)}
     return Fasteners(
         meshed=tuple(meshed),
@@ -138,7 +139,7 @@ def _pressed(
     The ends of the shank do not count, such as that of a dowel on the bottom of its hole.
     """
     axis = np.array(shank.axis)
-    sides = [side for contact in joints for side in (contact.first, contact.second) if side[0] == shank.part]
+    sides = [side for contact in joints for side in contact.sides if side[0] == shank.part]
     pressed = [face for side in dict.fromkeys(sides) if _beyond(facts, face := facts.face(*side), shank)]
     low = [face for face in pressed if face.normal is not None and np.array(face.normal) @ axis > 0.99]
     high = [face for face in pressed if face.normal is not None and np.array(face.normal) @ axis < -0.99]
@@ -148,13 +149,7 @@ def _pressed(
 def _beyond(facts: GeometryFacts, face: FaceFacts, shank: FaceFacts) -> bool:
     """Whether a face reaches farther from the axis than the shank does."""
     assert shank.radius is not None
-    arm = facts.triangles(face).reshape(-1, 3) - np.array(shank.start)
-    axis = np.array(shank.axis)
-    return bool(np.linalg.norm(arm - np.outer(arm @ axis, axis), axis=1).max() > (1 + TIGHT) * shank.radius)
-
-
-def _nuts(facts: GeometryFacts, pairs: Sequence[tuple[FaceFacts, FaceFacts, float]]) -> bool:
-    return any(_is_nut(facts, shank, hole, gap) for shank, hole, gap in pairs)
+    return bool(_about(facts.triangles(face), shank)[0].max() > (1 + TIGHT) * shank.radius)
 
 
 def _is_nut(facts: GeometryFacts, shank: FaceFacts, hole: FaceFacts, gap: float) -> bool:
@@ -167,29 +162,33 @@ def _is_nut(facts: GeometryFacts, shank: FaceFacts, hole: FaceFacts, gap: float)
 
 def _reach(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[float, float]:
     """How far a part reaches from the axis of a shank, and its length along it [m]."""
+    arm, depth = _about(_corners(facts, part), shank)
+    return float(arm.max()), float(np.ptp(depth))
+
+
+def _corners(facts: GeometryFacts, part: str) -> Array:
+    """Corners of the triangles of a part [m]."""
     numbers = [k for k, face in enumerate(facts.faces) if face.part == part]
-    points: Array = facts.corners[np.isin(facts.face_of, numbers)].reshape(-1, 3)
+    return np.asarray(facts.corners[np.isin(facts.face_of, numbers)])
+
+
+def _about(points: Array, shank: FaceFacts) -> tuple[Array, Array]:
+    """How far points (..., 3) [m] lie from the axis of a shank, and how far along it from its start [m]."""
     axis = np.array(shank.axis)
-    arm = points - np.array(shank.start)
+    arm = points.reshape(-1, 3) - np.array(shank.start)
     depth = arm @ axis
-    return float(np.linalg.norm(arm - np.outer(depth, axis), axis=1).max()), float(np.ptp(depth))
+    return np.linalg.norm(arm - np.outer(depth, axis), axis=1), depth
 
 
 def _pin(facts: GeometryFacts, part: PartFacts, shank: FaceFacts, holes: tuple[FaceFacts, ...]) -> DrawnPin:
-    ends = _ends(facts, part.name, shank)
+    depth = _about(_corners(facts, part.name), shank)[1]
+    low, high = (np.array(shank.start) + z * np.array(shank.axis) for z in (depth.min(), depth.max()))
+    ends = to_nanometres(low), to_nanometres(high)
     cylinder = pi * (shank.radius or 0.0) ** 2 * float(np.linalg.norm(np.subtract(*ends)))
     return DrawnPin(part=part.name, shank=shank, holes=holes, ends=ends, hollow=part.volume < SOLID * cylinder)
 
 
-def _ends(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[Point, Point]:
-    """Points of the axis of a shank [m] where its part begins and ends."""
-    numbers = [k for k, face in enumerate(facts.faces) if face.part == part]
-    axis, start = np.array(shank.axis), np.array(shank.start)
-    depth = (facts.corners[np.isin(facts.face_of, numbers)].reshape(-1, 3) - start) @ axis
-    low, high = (start + z * axis for z in (depth.min(), depth.max()))
-    return _point(low), _point(high)
-
-
-def _point(place: Array) -> Point:
+def to_nanometres(place: Array) -> Point:
+    """A point (3,) [m] to the last digit that a study needs."""
     x, y, z = (round(float(value), 9) + 0.0 for value in place)
     return x, y, z

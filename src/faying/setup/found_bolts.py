@@ -9,7 +9,7 @@ from faying.bolt.threads import CLEARANCE_HOLES, HEADS, WASHERS, size_for_hole
 from faying.geometry.bores import Bore, Stack, bores, room_around, rows, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.seats import Countersink, countersink, lips
-from faying.setup.fasteners import Fasteners, listed
+from faying.setup.fasteners import Fasteners, MeshedBolt, quoted, to_nanometres
 from faying.setup.found_dowels import like_dowel, size_of, takes_dowel
 from faying.typing import Array
 from faying.units import show
@@ -80,10 +80,10 @@ def found_bolts(
         joints: the planes that touch.
         out: takes the rows of holes that have no bolt.
     """
-    found = [_meshed(facts, bolt.part, bolt.shank, bolt.head, bolt.nut, joints) for bolt in fasteners.meshed]
+    found = [_meshed(facts, bolt) for bolt in fasteners.meshed]
     solid = {bolt.part for bolt in fasteners.meshed}
     holes = [bore for bore in bores(facts) if bore.part not in solid]
-    met = {side for contact in joints for side in (contact.first, contact.second)}
+    met = {side for contact in joints for side in contact.sides}
     for stack in rows(holes, reach=0.01 * facts.size):
         taken = any((bore.part, number) in fasteners.shanks for bore in stack.bores for number in bore.faces)
         if taken or 2 * min(bore.radius for bore in stack.bores) > WIDEST:
@@ -98,27 +98,20 @@ def found_bolts(
     return found
 
 
-def _meshed(
-    facts: GeometryFacts, part: str, shank: FaceFacts, head: FaceFacts, nut: FaceFacts, joints: Sequence[TouchingFaces]
-) -> FoundBolt:
-    assert shank.radius is not None
-    wide = 2e3 * shank.radius
+def _meshed(facts: GeometryFacts, bolt: MeshedBolt) -> FoundBolt:
+    assert bolt.shank.radius is not None
+    wide = 2e3 * bolt.shank.radius
     size = round(wide) if abs(wide - round(wide)) < 0.05 and round(wide) in WASHERS else None
-    clamped = {
-        other[0]
-        for contact in facts.contacts
-        for mine, other in ((contact.first, contact.second), (contact.second, contact.first))
-        if mine[0] == part
-    }
+    clamped = {part for contact in facts.contacts if bolt.part in contact.parts for part in contact.parts}
     return FoundBolt(
-        axis=np.array(shank.axis),
-        parts=tuple(sorted(clamped)),
-        head=(head,),
-        end=(nut,),
+        axis=np.array(bolt.shank.axis),
+        parts=tuple(sorted(clamped - {bolt.part})),
+        head=(bolt.head,),
+        end=(bolt.nut,),
         words=("head", "nut"),
         size=size,
-        part=part,
-        remark=f"the part {part!r} is the bolt",
+        part=bolt.part,
+        remark=f"the part {bolt.part!r} is the bolt",
     )
 
 
@@ -152,7 +145,7 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
             end=tuple(face for face in found if face.part == owner),
             words=("seat", "lips"),
             size=size,
-            at=_at(stack),
+            at=to_nanometres(stack.middle),
             ring=(round(hole, 9), outer),
             remark=(
                 f"M{size} for a hole of {show(hole, 'm')} (ISO 273), in a T-slot of {owner!r}; "
@@ -204,11 +197,6 @@ def _outer(size: int, room: float) -> tuple[float, str]:
     return outer, why
 
 
-def _at(stack: Stack) -> tuple[float, float, float]:
-    x, y, z = (round(float(v), 9) + 0.0 for v in stack.middle)
-    return x, y, z
-
-
 def _screw(
     facts: GeometryFacts,
     stack: Stack,
@@ -245,7 +233,7 @@ def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: int, 
         end=(nut,),
         words=("countersink", "seat"),
         size=size,
-        at=_at(stack),
+        at=to_nanometres(stack.middle),
         ring=(round(hole, 9), round(outer, 9)),
         remark=f"M{size} for a hole of {show(hole, 'm')} (ISO 273); countersunk head, and a nut on a ring as wide",
     )
@@ -263,7 +251,7 @@ def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFact
         head=(ends[0],),
         end=(ends[1],),
         size=size,
-        at=_at(stack),
+        at=to_nanometres(stack.middle),
         ring=(round(2 * widest.radius, 9), outer),
         remark=f"M{size} for {_hole(widest)} (ISO 273); seat: from the hole to the diameter {why}{pin}",
     )
@@ -283,7 +271,7 @@ def shoulders(facts: GeometryFacts, joints: Sequence[TouchingFaces], found: Sequ
     """Faces that touch along the bolts of their two parts, as the shoulder of a stepped lap: no bolt presses them."""
     out = []
     for contact in joints:
-        axes = clamped_along(found, contact.first[0], contact.second[0])
+        axes = clamped_along(found, *contact.parts)
         normal = np.array(facts.face(*contact.first).normal)
         if axes and max(abs(float(normal @ axis)) for axis in axes) < 0.5:
             out.append(contact)
@@ -292,8 +280,7 @@ def shoulders(facts: GeometryFacts, joints: Sequence[TouchingFaces], found: Sequ
 
 def shoulder_remark(contacts: Sequence[TouchingFaces]) -> str:
     """What there is to say of shoulders."""
-    pairs = dict.fromkeys((contact.first[0], contact.second[0]) for contact in contacts)
-    between = "; ".join(listed(pair) for pair in pairs)
+    between = "; ".join(quoted(pair) for pair in dict.fromkeys(contact.parts for contact in contacts))
     return (
         f"{len(contacts)} pairs of faces that touch along the bolts of {between} (shoulders, registers) "
         "are not joints, "

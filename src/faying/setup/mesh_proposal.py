@@ -14,6 +14,7 @@ from faying.fe.mesh import Mesh
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import TOUCHING
+from faying.setup.fasteners import to_nanometres
 from faying.setup.proposal import BoltProposal, JointProposal, Proposal, rounded, touching
 from faying.typing import Array
 from faying.units import show
@@ -44,7 +45,7 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
     contacts = [
         contact
         for contact in touching(facts)
-        if not any(mesh.is_shared(facts.face(*side).name) for side in (contact.first, contact.second))
+        if not any(mesh.is_shared(facts.face(*side).name) for side in contact.sides)
     ]
     remarks = [note.text for note in mesh.notes]
     bolts: list[BoltProposal] = []
@@ -86,7 +87,7 @@ def _halves(path: Path, mesh: Mesh) -> dict[str, str]:
 
 
 def _joint(facts: GeometryFacts, contact: TouchingFaces, number: int, count: int) -> JointProposal:
-    one, two = facts.face(*contact.first), facts.face(*contact.second)
+    one, two = (facts.face(*side) for side in contact.sides)
     return JointProposal(
         name="joint" if count == 1 else f"joint {number}",
         faces=(one.name, two.name),
@@ -110,7 +111,7 @@ def _bolt(
     part = parts[0]
     places = mesh.points[np.isin(mesh.numbers, section.nodes)]
     middle, axis = places.mean(axis=0), _axis(places, section)
-    met = {side for contact in contacts for side in (contact.first, contact.second)}
+    met = {side for contact in contacts for side in contact.sides}
     seats: dict[bool, list[FaceFacts]] = {True: [], False: []}
     for face in facts.by_part[part]:
         thread = mesh.is_shared(face.name)  # what holds it there is one with it
@@ -126,14 +127,13 @@ def _bolt(
     ends = [max(some, key=lambda face: (not mesh.is_shared(face.name), face.area)) for some in seats.values()]
     head, nut = sorted(ends, key=lambda face: mesh.is_shared(face.name))
     size = _size(places, axis)
-    x, y, z = (round(float(v), 9) + 0.0 for v in middle)
     force = section.force if section.force is not None and section.force > 0 else None
     pulled = "" if section.force is None else f", force {section.force:.9g} in the unit of the file"
     return BoltProposal(
         name=name,
         faces=(head.name, nut.name),
         size=size,
-        at=(x, y, z),
+        at=to_nanometres(middle),
         part=part,
         force=force,
         remark=f"{section.text}{pulled}: the part {part!r} is the bolt"

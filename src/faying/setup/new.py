@@ -1,8 +1,7 @@
 """The study that `faying new` writes from a STEP or mesh file: what was found, what is assumed, and each of it said."""
 
-import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from faying.geometry.face_facts import read_facts
 from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
 from faying.setup.bolt_names import grouped
+from faying.setup.edit import written as quoted
 from faying.setup.mesh_proposal import propose_mesh
 from faying.setup.proposal import GRADE, SHARE, BoltProposal, DowelProposal, Proposal, propose
 from faying.setup.template import SCHEMA, surface
@@ -108,7 +108,7 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         "[modes]\ncount = 10                     # elastic modes\n",
     ]
     assumed += _assumed_of_bolts(proposal.bolts, answers)
-    assumed += _alike({dowel.name: f"{dowel.remark}; without play, {STEEL}" for dowel in proposal.dowels})
+    assumed += _alike((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
     assumed.append("no support: the structure is free")
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
@@ -140,7 +140,7 @@ def _head(proposal: Proposal, step: Path, out: Path) -> str:
         f"# Written by faying new from {_plain(step.name)}. Lines marked ASSUMED are guesses: make them yours.",
         f"# Look at it with: faying check {_plain(out.name)}; run it with: faying run {_plain(out.name)}",
         *(f"# Note: {_plain(remark)}" for remark in proposal.remarks),
-        f"title = {_quoted(step.stem)}",
+        f"title = {quoted(step.stem)}",
         "",
     ]
     return "\n".join(lines)
@@ -149,37 +149,36 @@ def _head(proposal: Proposal, step: Path, out: Path) -> str:
 def _geometry(proposal: Proposal, step: str) -> str:
     elements = f"about {proposal.unknowns:,} unknowns"
     if proposal.unit:
-        lines = ["[geometry]", f"mesh = {_quoted(step)}", f"unit = {_quoted(proposal.unit)}"]
+        lines = ["[geometry]", f"mesh = {quoted(step)}", f"unit = {quoted(proposal.unit)}"]
         if proposal.snap:
             lines.append(f'snap = "{show(proposal.snap, "m")}"  # ASSUMED: gaps between faces up to this are none')
         if proposal.sets:
             lines.append("[geometry.sets]  # parts that are several sets of the file, or bodies of it")
-        lines += [f"{_quoted(part)} = {_quoted(some)}" for part, some in proposal.sets.items()]
+        lines += [f"{quoted(part)} = {quoted(some)}" for part, some in proposal.sets.items()]
         return "\n".join([*lines, ""])
     lines = [
         "[geometry]",
-        f"step = {_quoted(step)}",
+        f"step = {quoted(step)}",
         f'size = "{show(proposal.size, "m")}"  # largest element: {elements}',
     ]
     if proposal.snap:
         lines.append(f'snap = "{show(proposal.snap, "m")}"  # ASSUMED: gaps of the CAD model up to this are none')
     if proposal.left_out:
-        listed = ", ".join(map(_quoted, proposal.left_out))
-        lines.append(f"leave_out = [{listed}]  # parts of the file that are not meshed")
+        lines.append(f"leave_out = {quoted(proposal.left_out)}  # parts of the file that are not meshed")
     if proposal.faces:
         lines.append(f"[geometry.face]  # names for faces; `faying faces {_plain(step)}` lists all of them")
-    lines += [f"{_quoted(name)} = {selector_text(one)}" for name, one in proposal.faces.items()]
+    lines += [f"{quoted(name)} = {selector_text(one)}" for name, one in proposal.faces.items()]
     return "\n".join([*lines, ""])
 
 
 def selector_text(selector: Selector) -> str:
     """A selector as the study writes it."""
-    words = [f"part = {_quoted(selector.part)}"]
+    words = [f"part = {quoted(selector.part)}"]
     if selector.touching is not None:
-        words.append(f"touching = {_quoted(selector.touching)}")
+        words.append(f"touching = {quoted(selector.touching)}")
     if selector.normal is not None:
         word = next((w for w, axis in AXES.items() if axis == selector.normal), None)
-        words.append(f"normal = {_quoted(word) if word else list(selector.normal)}")
+        words.append(f"normal = {quoted(word) if word else list(selector.normal)}")
     if selector.number is not None:
         numbers = list(selector.numbers)
         words.append(f"number = {numbers if len(numbers) > 1 else numbers[0]}")
@@ -191,8 +190,8 @@ def _parts(proposal: Proposal, answers: Answers, assumed: list[str]) -> str:
     guessed = []
     for part in proposal.facts.parts:
         material = answers.materials.get(part.name)
-        lines.append(f"[part.{_quoted(part.name)}]")
-        lines.append(f"material = {_quoted(material or STEEL)}{'' if material else '  # ASSUMED'}")
+        lines.append(f"[part.{quoted(part.name)}]")
+        lines.append(f"material = {quoted(material or STEEL)}{'' if material else '  # ASSUMED'}")
         guessed += [] if material else [part.name]
     if guessed:
         assumed.append(f"{STEEL} steel for {', '.join(guessed)}")
@@ -210,7 +209,7 @@ def _surface(out: Path, answers: Answers, assumed: list[str]) -> str:
     lines = [
         "# The rough surface: the scan of one face, laid on every joint. [joint.surface] gives one to a joint alone.",
         "[surface]",
-        f"scan = {_quoted(scan)}{mark}",
+        f"scan = {quoted(scan)}{mark}",
         'counter = "same"  # ASSUMED: the other face is alike but unrelated; "smooth", or the file of its own scan',
         "",
         "[law]",
@@ -226,29 +225,29 @@ def _joints(proposal: Proposal) -> str:
         gap = f", {show(joint.gap, 'm')} apart" if abs(joint.gap) > 1e-9 else ""
         lines += [
             "[[joint]]",
-            f"name = {_quoted(joint.name)}",
-            f"faces = [{', '.join(map(_quoted, joint.faces))}]  # {show_area(joint.area)}{gap}",
+            f"name = {quoted(joint.name)}",
+            f"faces = {quoted(joint.faces)}  # {show_area(joint.area)}{gap}",
             "",
         ]
     return "\n".join(lines)
 
 
 def _bolt(bolt: BoltProposal, answers: Answers) -> str:
-    lines = [f"[[bolt]]  # {_plain(bolt.remark)}", f"name = {_quoted(bolt.name)}"]
-    lines.append(f"faces = [{', '.join(map(_quoted, bolt.faces))}]")
+    lines = [f"[[bolt]]  # {_plain(bolt.remark)}", f"name = {quoted(bolt.name)}"]
+    lines.append(f"faces = {quoted(bolt.faces)}")
     if bolt.part is not None:
-        lines.append(f"part = {_quoted(bolt.part)}")
-        lines += [f"at = [{', '.join(_quoted(_mm(x)) for x in bolt.at)}]"] if bolt.at is not None else []
+        lines.append(f"part = {quoted(bolt.part)}")
+        lines += [f"at = {_millimetres(bolt.at)}"] if bolt.at is not None else []
         lines += [f'thread = "M{bolt.size}"', f'grade = "{GRADE}"  # ASSUMED'] if bolt.size else []
     else:
         assert bolt.ring is not None
         inner, outer = (show(d, "m") for d in bolt.ring)
         if bolt.at is not None:
-            lines.append(f"at = [{', '.join(_quoted(_mm(x)) for x in bolt.at)}]")
+            lines.append(f"at = {_millimetres(bolt.at)}")
         lines += [
             f'seat = ["{inner}", "{outer}"]',
             f'diameter = "{bolt.size} mm"',
-            f"material = {_quoted(STEEL)}",
+            f"material = {quoted(STEEL)}",
             f'grade = "{GRADE}"  # ASSUMED',
         ]
     if answers.preload is not None:
@@ -263,12 +262,11 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
 
 
 def _dowel(dowel: DowelProposal) -> str:
-    lines = [f"[[dowel]]  # {_plain(dowel.remark)}", f"name = {_quoted(dowel.name)}"]
-    lines.append(f"walls = [{', '.join(map(_quoted, dowel.walls))}]  # ASSUMED: it fits them without play")
+    lines = [f"[[dowel]]  # {_plain(dowel.remark)}", f"name = {quoted(dowel.name)}"]
+    lines.append(f"walls = {quoted(dowel.walls)}  # ASSUMED: it fits them without play")
     if dowel.ends is not None:
-        ends = (f"[{', '.join(_quoted(_mm(x)) for x in end)}]" for end in dowel.ends)
-        lines.append(f"ends = [{', '.join(ends)}]")
-    return "\n".join([*lines, f"material = {_quoted(STEEL)}  # ASSUMED", ""])
+        lines.append(f"ends = [{', '.join(map(_millimetres, dowel.ends))}]")
+    return "\n".join([*lines, f"material = {quoted(STEEL)}  # ASSUMED", ""])
 
 
 def _share() -> str:
@@ -277,29 +275,29 @@ def _share() -> str:
 
 def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[str]:
     """What is assumed of the bolts; those that are alike have one line."""
-    groups: dict[str, list[str]] = {}
-    for bolt in bolts:
-        groups.setdefault(bolt.remark, []).append(bolt.name)
-    for bolt in bolts:
-        if answers.preload is None and bolt.force is not None:
-            groups.setdefault(f"{bolt.force:.9g} N, the force of the file taken as newtons", []).append(bolt.name)
-        elif answers.preload is None and bolt.preload is not None:
-            groups.setdefault(f"{show(bolt.preload, 'N')}, {_share()}", []).append(bolt.name)
-        elif answers.preload is None:
-            groups.setdefault("no preload; its thread is not known: give one", []).append(bolt.name)
-    return [f"{grouped(names)}: {words}" for words, names in groups.items()]
+    said = [(bolt.name, bolt.remark) for bolt in bolts]
+    for bolt in bolts if answers.preload is None else ():
+        if bolt.force is not None:
+            words = f"{bolt.force:.9g} N, the force of the file taken as newtons"
+        elif bolt.preload is not None:
+            words = f"{show(bolt.preload, 'N')}, {_share()}"
+        else:
+            words = "no preload; its thread is not known: give one"
+        said.append((bolt.name, words))
+    return _alike(said)
 
 
-def _alike(said: Mapping[str, str]) -> list[str]:
+def _alike(said: Iterable[tuple[str, str]]) -> list[str]:
     """What is said of each name; names of which one thing is said have one line."""
     groups: dict[str, list[str]] = {}
-    for name, words in said.items():
+    for name, words in said:
         groups.setdefault(words, []).append(name)
     return [f"{grouped(names)}: {words}" for words, names in groups.items()]
 
 
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.9g} mm"
+def _millimetres(point: Sequence[float]) -> str:
+    """A point [m] as the study writes it."""
+    return quoted([f"{1e3 * x:.9g} mm" for x in point])
 
 
 def _relative(file: Path, out: Path) -> str:
@@ -310,11 +308,6 @@ def _relative(file: Path, out: Path) -> str:
 def _plain(text: str) -> str:
     """Text on one line, for comments: a comment with a line break would begin a line of the study."""
     return "".join(letter if letter.isprintable() else " " for letter in text)
-
-
-def _quoted(text: str) -> str:
-    """Text as TOML writes it."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def summary(written: Written, study: Path) -> Sequence[str]:

@@ -15,7 +15,7 @@ from faying.memory import available
 from faying.numerics.memory import guessed
 from faying.setup.expected import unknowns_of
 from faying.setup.face_names import FaceNames
-from faying.setup.fasteners import find_fasteners, listed
+from faying.setup.fasteners import find_fasteners, quoted
 from faying.setup.found_bolts import FoundBolt, LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
 from faying.setup.found_dowels import FoundDowel, found_dowels
 from faying.units import show
@@ -146,7 +146,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     remarks = [f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)"] if snap else []
     remarks += fasteners.remarks
     if alone:
-        remarks.append(f"{listed(alone)}: no flat face touches another part; left out of the mesh (geometry.leave_out)")
+        remarks.append(f"{quoted(alone)}: no flat face touches another part; left out of the mesh (geometry.leave_out)")
     if apart:
         gap = show(max(contact.gap for contact in apart), "m")
         text = f"{len(apart)} pairs of faces up to {gap} apart, which no bolt closes, are not joints: left out; add a "
@@ -176,7 +176,7 @@ def _named_joints(
     joints = []
     for k, contact in enumerate(contacts, 1):
         word = "joint" if len(contacts) == 1 else f"joint {k}"
-        pair = [facts.face(*side) for side in (contact.first, contact.second)]
+        pair = [facts.face(*side) for side in contact.sides]
         faces = [names.of(one, word, other.part) for one, other in zip(pair, reversed(pair), strict=True)]
         joints.append(JointProposal(name=word, faces=(faces[0], faces[1]), gap=contact.gap, area=contact.area))
     return tuple(joints)
@@ -212,29 +212,26 @@ def touching(facts: GeometryFacts) -> list[TouchingFaces]:
         one
         for one in facts.contacts
         if facts.face(*one.first).kind == "plane"
-        and one.area >= LEAST * min(facts.face(*one.first).area, facts.face(*one.second).area)
+        and one.area >= LEAST * min(facts.face(*side).area for side in one.sides)
     ]
     touching = [one for one in plane if abs(one.gap) <= close]
-    met = {frozenset((one.first[0], one.second[0])) for one in touching}
-    near = [one for one in plane if frozenset((one.first[0], one.second[0])) not in met and one.gap > 0]
-    least = {frozenset((one.first[0], one.second[0])): np.inf for one in near}
+    met = {frozenset(one.parts) for one in touching}
+    near = [one for one in plane if frozenset(one.parts) not in met and one.gap > 0]
+    least: dict[frozenset[str], float] = {}
     for one in near:
-        pair = frozenset((one.first[0], one.second[0]))
-        least[pair] = min(least[pair], one.gap)
-    near = [one for one in near if one.gap <= least[frozenset((one.first[0], one.second[0]))] + close]
-    return [*touching, *near]
+        pair = frozenset(one.parts)
+        least[pair] = min(least.get(pair, np.inf), one.gap)
+    return [*touching, *(one for one in near if one.gap <= least[frozenset(one.parts)] + close)]
 
 
 def _apart(facts: GeometryFacts, contacts: Sequence[TouchingFaces], bolts: Sequence[FoundBolt]) -> list[TouchingFaces]:
     """Faces that only nearly touch, of parts that no bolt clamps together and that other parts touch."""
     close = TOUCHING * facts.size
-    touched = {side[0] for one in contacts if abs(one.gap) <= close for side in (one.first, one.second)}
+    touched = {part for one in contacts if abs(one.gap) <= close for part in one.parts}
     return [
         one
         for one in contacts
-        if abs(one.gap) > close
-        and {one.first[0], one.second[0]} <= touched
-        and not clamped_along(bolts, one.first[0], one.second[0])
+        if abs(one.gap) > close and touched.issuperset(one.parts) and not clamped_along(bolts, *one.parts)
     ]
 
 
@@ -248,7 +245,7 @@ def _alone(facts: GeometryFacts, path: Path) -> tuple[str, ...]:
             f"{facts.file}: no flat faces of two parts touch; the nearest parts are {apart[0]!r} and {apart[1]!r}, "
             f"{show(apart[2], 'm')} apart. Move them together in the CAD program, or check what `faying faces` lists"
         )
-    joined = {part for contact in contacts for part in (contact.first[0], contact.second[0])}
+    joined = {part for contact in contacts for part in contact.parts}
     return tuple(part.name for part in facts.parts if part.name not in joined)
 
 

@@ -14,6 +14,7 @@ from faying.contact.law import ContactLaw
 from faying.contact.mates import line_of
 from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError, InputError
+from faying.geometry.seen_along import across
 from faying.joint.clamping import SEAT_REACH, seat_ring
 from faying.joint.joint_law import JointLaw
 from faying.joint.strength import SolidPlace
@@ -151,7 +152,7 @@ def _greatest(sketch: Sketch, place: BoltPlace | SolidPlace) -> float:
 
 def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | SolidPlace, float]]:
     """The bolts that clamp a joint, with the depth [m] of the joint below the head: within 1.5 seats of their axes."""
-    corners = _corners(sketch, joint)
+    corners = np.concatenate([sketch.mesh.points[rows.ravel()] for rows in sketch.mesh.face(joint.faces[0])])
     out: list[tuple[BoltPlace | SolidPlace, float]] = []
     for place in sketch.fitted_bolts:
         if isinstance(place, SolidPlace) and {*place.bolt.faces} & {*joint.faces}:
@@ -169,16 +170,8 @@ def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | Solid
 
 def _inside(corners: Array, place: BoltPlace | SolidPlace) -> bool:
     """Whether the axis of a bolt runs within the box around the corners of a face, seen along the axis."""
-    helper = np.eye(3)[np.argmin(np.abs(place.axis))]
-    one = np.cross(place.axis, helper)
-    plane = np.stack([one / np.linalg.norm(one), np.cross(place.axis, one / np.linalg.norm(one))], axis=1)
-    flat = (corners - place.point) @ plane
+    flat = (corners - place.point) @ across(place.axis)
     return bool(np.all(flat.min(axis=0) <= 0) and np.all(flat.max(axis=0) >= 0))
-
-
-def _corners(sketch: Sketch, joint: JointChoice) -> Array:
-    """Corners (n, 3) [m] of the triangles of a joint's first face."""
-    return np.asarray(np.concatenate([sketch.mesh.points[rows.ravel()] for rows in sketch.mesh.face(joint.faces[0])]))
 
 
 def _rim(sketch: Sketch, one: Share, mine: float) -> tuple[float, float] | None:

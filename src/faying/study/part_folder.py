@@ -6,11 +6,9 @@ import shutil
 from pathlib import Path
 from typing import IO, Any, Self
 
-import numpy as np
-
 from faying import __version__
 from faying.errors import FayingError, InputError
-from faying.files import is_sealed, write_text
+from faying.files import write_text
 from faying.study.study import Study
 
 
@@ -147,14 +145,3 @@ def _lock(file: IO[str]) -> None:
     lock: Any = getattr(msvcrt, "locking", None)
     if lock is not None:
         lock(file.fileno(), getattr(msvcrt, "LK_NBLCK", 2), 1)
-
-
-def load_arrays(file: Path) -> dict[str, Any] | None:
-    """The arrays of a file, None where it is missing or not as it was written."""
-    try:
-        if not is_sealed(file):
-            return None
-        with file.open("rb") as opened, np.load(opened, allow_pickle=False) as data:
-            return {name: data[name] for name in data.files}
-    except (OSError, ValueError, EOFError, KeyError):
-        return None

@@ -196,10 +196,9 @@ class Study(Summary):
         parts = read_parts(top, materials)
         joints, bonds = read_joints(top)
         law = LawChoice.of(top.table("law") or Table({}, "law", faults, LAW.keys))
-        shared = top.table("surface")
-        surface = None if shared is None else SurfaceChoice.of(shared)
+        surface = top.inner("surface", SurfaceChoice.of)
         alternatives = tuple(AlternativeChoice.of(t, i) for i, t in enumerate(top.tables("alternative")))
-        backbone = BackboneChoice.of(top.table("backbone"))
+        backbone = top.inner("backbone", BackboneChoice.of)
         _note_lacking(faults, joints, law, surface)
         _note_lacking_alternatives(
             faults, joints, (law, surface), alternatives, () if backbone is None else backbone.laws
@@ -209,13 +208,14 @@ class Study(Summary):
         named = [bolt.name for bolt in bolts], [load.name for load in cases]
         sheets = read_bolt_sheets(top.tables("bolt_sheet"), *named)
         attached = _attached(top, materials)
-        modes = read_modes(top.table("modes"))
-        order = read_order(top.table("tightening"), [bolt.name for bolt in bolts])
-        response = ResponseChoice.of(top.table("response"))
+        modes = top.inner("modes", read_modes) or ModesChoice()
+        order = top.inner("tightening", lambda table: read_order(table, [bolt.name for bolt in bolts]))
+        response = top.inner("response", ResponseChoice.of)
         test, hammer = read_test(top, max(forces, key=len, default=()))
         geometry = _with_selectors(geometry, faults)
         known = Known.of(joints, bolts, forces, materials, parts)
-        uncertain = _uncertain(top, inside, known)
+        scattered = top.inner("uncertain", lambda table: table.data)
+        uncertain = read_uncertain(scattered, inside, known, faults)
         top.close()
         faults.raise_if_any(where)
         return cls(
@@ -275,12 +275,6 @@ def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
     if both:
         faults.add(f"geometry.face.{both[0]!r} is the name that a selector elsewhere gets; choose another name")
     return replace(geometry, face={**geometry.face, **faults.selectors})
-
-
-def _uncertain(top: Table, inside: dict[str, str], known: Known) -> UncertainChoice | None:
-    """Read [uncertain], with the texts that stood in the places of numbers."""
-    table = top.table("uncertain")
-    return read_uncertain(None if table is None else table.data, inside, known, top.faults)
 
 
 def _note_lacking_alternatives(

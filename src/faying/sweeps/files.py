@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from faying import netcdf
-from faying.files import write_arrays
+from faying.files import load_arrays, write_arrays
 from faying.netcdf import Variable
 from faying.reduction.reduced import ReducedModel
-from faying.study.part_folder import PartFile, load_arrays
+from faying.study.part_folder import PartFile
 from faying.sweeps.axes import Axis, Grid
 from faying.typing import Array
 

@@ -1,9 +1,9 @@
 """What a prediction or an identification keeps on disk: the bases, and every chunk of samples as it is done."""
 
-from faying.files import write_arrays
+from faying.files import load_arrays, write_arrays
 from faying.reduction.reduce import Reduction
 from faying.reduction.reduced import ReducedModel
-from faying.study.part_folder import PartFile, load_arrays
+from faying.study.part_folder import PartFile
 from faying.sweeps.files import kept_model
 from faying.sweeps.parallel import Rows
 from faying.typing import Array

@@ -119,6 +119,11 @@ class Table:
             return None
         return Table(value, self._name(key), self.faults, declared.keys)
 
+    def inner(self, key: str, read: "Callable[[Table], Made]") -> Made | None:
+        """Take a table within this one as `read` reads it; None where there is none."""
+        table = self.table(key)
+        return None if table is None else read(table)
+
     def tables(self, key: str) -> "list[Table]":
         """Take a list of tables [[key]]; a single [key] counts as a list of one."""
         declared = inner_of(self.keys, key)

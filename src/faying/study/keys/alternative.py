@@ -33,7 +33,7 @@ class AlternativeChoice:
     def of(cls, table: Table, index: int) -> "AlternativeChoice":
         """Read one [[alternative]]."""
         law, surface = table.table("law"), table.table("surface")
-        form = read_form(table.table("form"))
+        form = table.inner("form", read_form)
         if law is None and surface is None and form is None:
             table.faults.add(f"{table.where}: give a law, a surface or a form that differs from the study's")
         read = None if law is None else LawChoice.of(law)

@@ -80,14 +80,9 @@ class BackboneChoice:
             raise InputError(f'slip = "{self.slip}" should be one of microslip, coulomb')
 
     @classmethod
-    def of(cls, table: Table | None) -> "BackboneChoice | None":
-        """Read [backbone]."""
-        if table is None:
-            return None
-        given = {
-            **{key: table.get(key) for key in BACKBONE if key != "law"},
-            "laws": table.get("law"),
-        }
+    def of(cls, table: Table) -> "BackboneChoice | None":
+        """Read [backbone]; None where its faults leave none."""
+        given = {key: table.get(key) for key in BACKBONE if key != "law"} | {"laws": table.get("law")}
         if given["measured"] is not None:
             table.made(lambda: MeasuredBackbone.read(given["measured"]))  # a fault shows at once
         table.close()

@@ -26,6 +26,7 @@ from faying.study.declaration.declared import (
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity as read_quantity
 from faying.study.keys.face import face_names, two_faces
+from faying.study.keys.material import named_material
 
 OF_THE_MESH = (
     "material",
@@ -57,17 +58,10 @@ def read_bolt(
         _note_solid(table, part)
         bolt = SolidBolt(name=name, part=part, faces=faces, at=at, fastener=fastener)
     else:
-        material = _material(table, name, materials)
+        material = named_material(table, materials, f"bolt {name!r}")
         washers = tuple(_washer(t, name, materials) for t in table.tables("washer"))
         given: dict[str, Any] = {
-            "seat": table.get("seat"),
-            "head_mass": table.get("head_mass"),
-            "nut_mass": table.get("nut_mass"),
-            "engaged": table.get("engaged"),
-            "shank": table.get("shank"),
-            "head": table.get("head"),
-            "thread": thread,
-            "friction": None if None in friction else friction,
+            key: table.get(key) for key in ("seat", "head_mass", "nut_mass", "engaged", "shank", "head")
         }
         if diameter is None and "material" in table.data:
             table.faults.add(
@@ -83,6 +77,8 @@ def read_bolt(
                     material=material,
                     washers=tuple(w for w in washers if w is not None),
                     fastener=fastener,
+                    thread=thread,
+                    friction=None if None in friction else friction,
                     **given,
                 )
             )
@@ -136,18 +132,9 @@ def _note_solid(table: Table, part: str) -> None:
         )
 
 
-def _material(table: Table, bolt: str, materials: Mapping[str, Material]) -> Material | None:
-    name = table.get("material")
-    if name is None or name in materials:
-        return materials.get(name) if name is not None else None
-    known = ", ".join(f'"{m}"' for m in materials)
-    table.faults.add(f'bolt {bolt!r}: material "{name}" is unknown; the known ones are {known}')
-    return None
-
-
 def _washer(table: Table, bolt: str, materials: Mapping[str, Material]) -> Washer | None:
     outer, inner, thickness = (table.get(key) for key in ("outer", "inner", "thickness"))
-    material = _material(table, bolt, materials)
+    material = named_material(table, materials, f"bolt {bolt!r}")
     table.close()
     if None in (outer, inner, thickness) or material is None:
         return None

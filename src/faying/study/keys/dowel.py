@@ -10,6 +10,7 @@ from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, list
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import point as read_point
 from faying.study.keys.face import several_faces, several_names
+from faying.study.keys.material import named_material
 
 
 def read_dowels(tables: list[Table], materials: Mapping[str, Material]) -> tuple[Dowel, ...]:
@@ -27,15 +28,12 @@ def _dowel(table: Table, index: int, materials: Mapping[str, Material]) -> Dowel
     """Read one [[dowel]]; None where its faults leave none."""
     name = table.get("name", f"dowel {index + 1}")
     walls = several_names(table, "walls", name)
-    diameter, ends, material = table.get("diameter"), table.get("ends"), table.get("material")
+    diameter, ends = table.get("diameter"), table.get("ends")
+    material = named_material(table, materials, f"dowel {name!r}")
     table.close()
-    if material is not None and material not in materials:
-        known = ", ".join(f'"{one}"' for one in materials)
-        table.faults.add(f'dowel {name!r}: material "{material}" is unknown; the known ones are {known}')
-        return None
     if material is None or not walls:
         return None
-    return table.made(lambda: Dowel(name, walls, material=materials[material], diameter=diameter, ends=ends))
+    return table.made(lambda: Dowel(name, walls, material=material, diameter=diameter, ends=ends))
 
 
 def _ends(value: Any, name: str) -> tuple[tuple[float, ...], ...]:

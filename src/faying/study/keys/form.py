@@ -20,11 +20,11 @@ from faying.study.declaration.reader import Table
 from faying.study.keys.waviness import WAVINESS, read_waviness
 
 
-def read_form(table: Table | None) -> Form | None:
-    """Read [joint.form]; None where there is none."""
-    if table is None:
-        return None
-    _note_flat(table)
+def read_form(table: Table) -> Form | None:
+    """Read [joint.form]; None where its faults leave none."""
+    others = [key for key in table.data if key != "flat"]
+    if table.get("flat") and others:
+        table.faults.add(f"{table.where}: flat = true says that the faces have no form; leave out {', '.join(others)}")
     given = {name: table.get(name) for name in PARAMETERS}
     along = table.get("along")
     gap, first, second = table.table("gap"), table.table("first"), table.table("second")
@@ -32,18 +32,11 @@ def read_form(table: Table | None) -> Form | None:
         "gap": None if gap is None else _gap(gap),
         "first": None if first is None else _face(first),
         "second": None if second is None else _face(second),
-        "waviness": read_waviness(table.table("waviness")),
+        "waviness": table.inner("waviness", read_waviness),
     }
     table.close()
     values = {name: value for name, value in given.items() if value is not None}
     return table.made(lambda: Form(**values, along=along, **maps))
-
-
-def _note_flat(table: Table) -> None:
-    """Take `flat`, and note where it stands beside a form."""
-    others = [key for key in table.data if key != "flat"]
-    if table.get("flat") and others:
-        table.faults.add(f"{table.where}: flat = true says that the faces have no form; leave out {', '.join(others)}")
 
 
 def _gap(table: Table) -> GapMap | None:

@@ -61,15 +61,18 @@ def read_geometry(top: Table) -> GeometryChoice:
         return _meshed(table)
     step = table.get("step")
     size = table.get("size")
-    sizes: dict[str, float] = {}
-    inner = table.table("face_size")
-    for name in list(inner.data) if inner else []:
-        sizes[name] = inner.get(name) if inner else 0.0
+    sizes = _by_name(table, "face_size")
     faces = _faces(table)
     snap = table.get("snap")
     left = table.get("leave_out")
     table.close()
     return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap, leave_out=left)
+
+
+def _by_name(table: Table, key: str) -> dict[str, Any]:
+    """Take a table of values by names that the user gives."""
+    inner = table.table(key)
+    return {name: inner.get(name) for name in inner.data} if inner else {}
 
 
 def _parts(value: Any, name: str) -> tuple[str, ...]:
@@ -87,8 +90,7 @@ def _faces(table: Table) -> dict[str, Selector]:
             '[geometry.face] "upper.end" = {part = "upper", nearest = ["50 mm", "0 mm", "30 mm"]}'
         )
         table.data.pop("face_at")
-    places = table.table("face")
-    found = {name: read_selector(one) for name, one in (places.each().items() if places else ())}
+    found = {name: read_selector(one) for name, one in table.named("face").items()}
     return {name: selector for name, selector in found.items() if selector is not None}
 
 
@@ -103,8 +105,7 @@ def _meshed(table: Table) -> GeometryChoice:
         if key in table.data:
             table.faults.add(f"geometry.{key} is for a STEP file, and geometry.mesh is a finished mesh; leave it out")
             table.data.pop(key)
-    inner = table.table("sets")
-    sets = {name: inner.get(name) for name in list(inner.data)} if inner else {}
+    sets = _by_name(table, "sets")
     faces = _faces(table)
     snap = table.get("snap")
     table.close()

@@ -74,7 +74,7 @@ class JointChoice:
             search_distance=table.get("search_distance"),
             surface=None if surface is None else SurfaceChoice.of(surface),
             law=None if law is None else LawChoice.of(law),
-            form=read_form(table.table("form")),
+            form=table.inner("form", read_form),
             bonded=bonded,
             number=index + 1,
         )

@@ -37,6 +37,8 @@ from faying.study.keys.face import face_name, one_face
 
 LENGTH = '["0 mm", "0 mm", "0.1 mm"]'
 EXAMPLES = {"N": '["0 N", "0 N", "5 kN"]', "N*m": '["0 N*m", "20 N*m", "0 N*m"]', "m": LENGTH}
+CHANGES = 'changes by part or bolt, for example {plate = "60 K"}'
+FACTORS = 'factors by load, for example {"10 g" = 1.5}'
 EXAMPLES["m/s^2"] = '["0 m/s^2", "0 m/s^2", "98.1 m/s^2"]'
 
 
@@ -54,14 +56,8 @@ def read_loads(tables: Sequence[Table]) -> tuple[Load, ...]:
 def _read(table: Table) -> Load | None:
     name = table.get("name")
     forces = [_force(one, f"{table.where} force {k}") for k, one in enumerate(table.tables("force"), 1)]
-    pressures = [
-        _on_face(one, f"{table.where} pressure {k}", "pressure", Pressure)
-        for k, one in enumerate(table.tables("pressure"), 1)
-    ]
-    moves = [
-        _on_face(one, f"{table.where} displacement {k}", "displacement", Displacement)
-        for k, one in enumerate(table.tables("displacement"), 1)
-    ]
+    pressures = _on_faces(table, "pressure", Pressure)
+    moves = _on_faces(table, "displacement", Displacement)
     acceleration = table.get("acceleration") or NOTHING
     heat = table.get("temperature")
     combine = table.get("combine")
@@ -94,11 +90,14 @@ def _force(table: Table, label: str) -> Force | None:
     return table.made(lambda: Force(face, force=force, moment=moment, point=place))
 
 
-def _on_face(table: Table, label: str, key: str, make: Callable[[str, Any], Made]) -> Made | None:
-    """What `make` makes of a face and the value of a key; None where a fault leaves one of them out."""
-    face, value = face_name(table, "face", label), table.get(key)
-    table.close()
-    return None if face is None or value is None else make(face, value)
+def _on_faces(table: Table, key: str, make: Callable[[str, Any], Made]) -> list[Made | None]:
+    """What `make` makes of the face and the value of each table of a key; None where a fault leaves one of them out."""
+    out: list[Made | None] = []
+    for k, one in enumerate(table.tables(key), 1):
+        face, value = face_name(one, "face", f"{table.where} {key} {k}"), one.get(key)
+        one.close()
+        out.append(None if face is None or value is None else make(face, value))
+    return out
 
 
 def _vector(unit: str) -> Callable[[Any, str], Vector]:
@@ -111,16 +110,13 @@ def _vector(unit: str) -> Callable[[Any, str], Vector]:
     return convert
 
 
-def _changes(value: Any, name: str) -> dict[str, float]:
-    if not isinstance(value, dict) or not value:
-        raise InputError(f'{name} = {value!r} should be changes by part or bolt, for example {{plate = "60 K"}}')
-    return {key: read_quantity(one, "K", f"{name}.{key}", positive=False) for key, one in value.items()}
+def _by_name(form: str, read: Callable[[Any, str], float]) -> Callable[[Any, str], dict[str, float]]:
+    def convert(value: Any, name: str) -> dict[str, float]:
+        if not isinstance(value, dict) or not value:
+            raise InputError(f"{name} = {value!r} should be {form}")
+        return {key: read(one, f"{name}.{key}") for key, one in value.items()}
 
-
-def _factors(value: Any, name: str) -> dict[str, float]:
-    if not isinstance(value, dict) or not value:
-        raise InputError(f'{name} = {value!r} should be factors by load, for example {{"10 g" = 1.5}}')
-    return {key: number(one, f"{name}.{key}") for key, one in value.items()}
+    return convert
 
 
 def _three(unit: str, says: str, default: Any = None) -> Key:
@@ -170,23 +166,23 @@ LOAD: Declared = {
         ),
     ),
     "temperature": own(
-        'changes by part or bolt, for example {plate = "60 K"}',
+        CHANGES,
         {"type": "object", "additionalProperties": QUANTITY},
         "Change of temperature since the bolts were tightened, by the name of the part or bolt.",
         {},
-        read=_changes,
+        read=_by_name(CHANGES, lambda value, name: read_quantity(value, "K", name, positive=False)),
         unit="K",
         allowed=f"{COLDEST:g} K to {WARMEST:g} K",
     ),
     "combine": own(
-        'factors by load, for example {"10 g" = 1.5}',
+        FACTORS,
         {
             "type": "object",
             "additionalProperties": {"type": "number", "minimum": -MAX_FACTOR, "maximum": MAX_FACTOR},
         },
         "Factors by the names of other cases, whose loads act here too.",
         {},
-        read=_factors,
+        read=_by_name(FACTORS, number),
         allowed=f"{-MAX_FACTOR:g} to {MAX_FACTOR:g}",
     ),
     "after": text("Case from whose state this one starts: its load gives way to this one. The preload where left out."),

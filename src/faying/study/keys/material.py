@@ -23,6 +23,16 @@ def read_materials(top: Table) -> dict[str, Material]:
     return materials
 
 
+def named_material(table: Table, materials: Mapping[str, Material], who: str) -> Material | None:
+    """Take the material that a bolt, a washer or a pin names; None where there is none, which is a fault if named."""
+    name = table.get("material")
+    if name is None or name in materials:
+        return None if name is None else materials[name]
+    known = ", ".join(f'"{one}"' for one in materials)
+    table.faults.add(f'{who}: material "{name}" is unknown; the known ones are {known}')
+    return None
+
+
 def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
     """Return the name of the material of each part."""
     parts: dict[str, str] = {}

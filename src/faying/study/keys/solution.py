@@ -31,10 +31,8 @@ MOST_POINTS, MOST_PASSES = 1_000_000, 100
 Point = tuple[float, float, float]
 
 
-def read_modes(table: Table | None) -> ModesChoice:
+def read_modes(table: Table) -> ModesChoice:
     """Read [modes]."""
-    if table is None:
-        return ModesChoice()
     choice = ModesChoice(**{key: table.get(key) for key in MODES})
     table.close()
     return choice
@@ -62,10 +60,8 @@ class ResponseChoice:
     structural_loss: float
 
     @classmethod
-    def of(cls, table: Table | None) -> "ResponseChoice | None":
+    def of(cls, table: Table) -> "ResponseChoice":
         """Read [response]."""
-        if table is None:
-            return None
         first, last = table.get("from"), table.get("to")
         if first is not None and last is not None and not first < last:
             table.faults.add(f"response: from = {first:g} Hz must be below to = {last:g} Hz")
@@ -88,10 +84,8 @@ class ResponseChoice:
         return choice
 
 
-def read_order(table: Table | None, names: Sequence[str]) -> tuple[int, ...] | None:
-    """Read [tightening]: the order as indices of bolts, pass after pass; None where all are pulled at once."""
-    if table is None:
-        return None
+def read_order(table: Table, names: Sequence[str]) -> tuple[int, ...] | None:
+    """Read [tightening]: the order as indices of bolts, pass after pass; None where it has a fault."""
 
     def order(value: Any, name: str) -> tuple[int, ...]:
         if not isinstance(value, list) or any(v not in names for v in value) or set(value) != set(names):
@@ -139,20 +133,13 @@ TIGHTENING: Declared = {
     "order": own("a list that names every bolt", listed(WORDS, 1), "The names of all bolts, in their order.", REQUIRED),
     "passes": count("How often the order is gone through.", 1, most=MOST_PASSES),
 }
+PLACE: Declared = {"point": point("The point.", REQUIRED), "direction": direction("The direction.", REQUIRED)}
 RESPONSE: Declared = {
     "from": quantity("Hz", "First frequency.", REQUIRED),
     "to": quantity("Hz", "Last frequency.", REQUIRED),
     **{
-        side: Inner(
-            says=says,
-            many=True,
-            required=True,
-            keys={"point": point(where, REQUIRED), "direction": direction(along, REQUIRED)},
-        )
-        for side, says, where, along in (
-            ("input", "A point and a direction of a force.", "The point.", "The direction."),
-            ("output", "A point and a direction of a motion.", "The point.", "The direction."),
-        )
+        side: Inner(says=f"A point and a direction of a {what}.", keys=PLACE, many=True, required=True)
+        for side, what in (("input", "force"), ("output", "motion"))
     },
     "points": count("Number of frequencies.", 1000, most=MOST_POINTS),
     "structural_loss": within(0, MOST_LOSS, "Loss factor of the parts themselves.", 0.0),

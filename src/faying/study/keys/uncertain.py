@@ -315,10 +315,7 @@ class _Reader:
     def _flatness(self, parts: list[str], value: Any, where: str) -> None:
         """Crowns and twist of the faces of each joint, or of one, from a flatness tolerance of each face."""
         tolerance = quantity(value, "m", where)
-        self._check(".".join(parts), where)
-        for joint in self.known.joints:
-            if len(parts) == 4 and joint.name != parts[1]:
-                continue
+        for joint in self._joints(parts, where):
             for shape, sd in SHAPE_SD.items():
                 centre = 0.0 if joint.form is None else float(getattr(joint.form, shape))
                 found = Distribution(kind="normal", centre=centre, spread=sd * tolerance)
@@ -326,10 +323,7 @@ class _Reader:
 
     def _waviness(self, parts: list[str], value: Any, where: str) -> None:
         """The waves of each joint, or of one: which are drawn, and how large unless that is given (value: true)."""
-        self._check(".".join(parts), where)
-        for joint in self.known.joints:
-            if len(parts) == 4 and joint.name != parts[1]:
-                continue
+        for joint in self._joints(parts, where):
             key = f"joint.{joint.name}.form.waviness"
             if value is not True:
                 self.add(key, value, where)
@@ -340,6 +334,11 @@ class _Reader:
                 )
             draws = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
             self._add(f"{key}_seed", draws, VARIED["waviness_seed"], where)
+
+    def _joints(self, parts: list[str], where: str) -> list[JointChoice]:
+        """The joint that a key names, or all of them."""
+        self._check(".".join(parts), where)
+        return [joint for joint in self.known.joints if len(parts) < 4 or joint.name == parts[1]]
 
     def _files(self, value: Any, where: str) -> tuple[Path, ...]:
         if not isinstance(value, list) or not value or not all(isinstance(one, str) for one in value):

@@ -17,10 +17,8 @@ SIZES = {
 WAYS = (*SIZES, "process", "from")  # in which the size can be said
 
 
-def read_waviness(table: Table | None) -> Waviness | None:
-    """Read waviness = {...}; None where there is none, or no size that can be used."""
-    if table is None:
-        return None
+def read_waviness(table: Table) -> Waviness | None:
+    """Read waviness = {...}; None where there is no size that can be used."""
     sizes, of_waves = ({name: table.get(name) for name in names} for names in (WAYS, OF_WAVES))
     said = [way for way in WAYS if way in table.data]
     table.close()
