@@ -28,18 +28,14 @@ class Backbones(Recorded):
 
     mode: int
     preload: float
-    at: Array = variable("axis", unit="m", long_name="point whose motion is given")
-    acceleration: Array = variable("amplitude", unit="m/s2", long_name="acceleration amplitude at the point")
-    frequencies: Array = variable("curve", "amplitude", unit="Hz", long_name="frequency of each sample", gaps=True)
-    damping: Array = variable(
-        "curve", "amplitude", unit="1", long_name="damping ratio to critical of each sample", gaps=True
-    )
-    measured_acceleration: Array = variable(
-        "measured", unit="m/s2", long_name="measured acceleration amplitude", default=()
-    )
-    measured_frequency: Array = variable("measured", unit="Hz", long_name="measured frequency", default=())
+    at: Array = variable("axis", "m", "point whose motion is given")
+    acceleration: Array = variable("amplitude", "m/s2", "acceleration amplitude at the point")
+    frequencies: Array = variable("curve amplitude", "Hz", "frequency of each sample", gaps=True)
+    damping: Array = variable("curve amplitude", "1", "damping ratio to critical of each sample", gaps=True)
+    measured_acceleration: Array = variable("measured", "m/s2", "measured acceleration amplitude", default=())
+    measured_frequency: Array = variable("measured", "Hz", "measured frequency", default=())
     measured_damping: Array = variable(
-        "measured", unit="1", long_name="measured damping ratio; NaN where not measured", gaps=True, default=()
+        "measured", "1", "measured damping ratio; NaN where not measured", gaps=True, default=()
     )
     measured_source: str = ""
     reasons: dict[str, int] = field(default_factory=dict)

@@ -31,8 +31,8 @@ class Fit(Recorded):
     misfit: float
     starts: int
     agreeing: int
-    values: Array = variable("model_parameter", unit="SI", long_name="values of the parameters")
-    frequencies: Array = variable("load", "mode", unit="Hz", long_name="frequencies of the model there", gaps=True)
+    values: Array = variable("model_parameter", "SI", "values of the parameters")
+    frequencies: Array = variable("load mode", "Hz", "frequencies of the model there", gaps=True)
 
 
 @final
@@ -44,10 +44,8 @@ class Identifiability(Recorded):
     """
 
     names: tuple[str, ...]
-    values: Array = variable("combination", unit="1", long_name="singular values, greatest first")
-    vectors: Array = variable(
-        "combination", "model_parameter", unit="1", long_name="weights of the parameters, each over its prior's sd"
-    )
+    values: Array = variable("combination", "1", "singular values, greatest first")
+    vectors: Array = variable("combination model_parameter", "1", "weights of the parameters, each over its prior's sd")
 
     @property
     def posterior_contraction(self) -> Array:

@@ -13,7 +13,7 @@ from faying.identify.fit import Fit, Identifiability
 from faying.misuse import checked_call
 from faying.netcdf import Group, Variable
 from faying.notes import Note
-from faying.result.fields import RECORD, Recorded, from_group, listed, to_group, variable
+from faying.result.fields import RECORD, Recorded, from_group, listed, optional, to_group, variable
 from faying.text import listed as joined
 from faying.typing import Array, Mask
 from faying.units import show
@@ -67,34 +67,26 @@ class Identification(Recorded):
     rounds: int
     steps: int
     calls: int
-    samples: Array = variable("draw", "parameter", unit="SI", long_name="samples of the posterior, of one weight")
-    log_likelihood: Array = variable("draw", "mode", unit="1", long_name="ln likelihood of what was measured of a mode")
-    loads: Array = variable("load", unit="N", long_name="preload")
-    test: Array = variable("load", "mode", unit="Hz", long_name="frequencies of the test", gaps=True)
-    used: Mask = variable("load", "mode", unit="1", long_name="whether a frequency was used", dtype="bool")
-    left_out: Mask = variable("load", unit="1", long_name="whether a load was left out", dtype="bool")
-    predictive: Array = variable("draw", "load", "mode", unit="Hz", long_name="frequencies as measured", gaps=True)
-    offset_mean: Array = variable("mode", unit="1", long_name="offset of ln test from ln model: posterior mean")
-    offset_sd: Array = variable("mode", unit="1", long_name="offset of ln test from ln model: posterior sd")
+    samples: Array = variable("draw parameter", "SI", "samples of the posterior, of one weight")
+    log_likelihood: Array = variable("draw mode", "1", "ln likelihood of what was measured of a mode")
+    loads: Array = variable("load", "N", "preload")
+    test: Array = variable("load mode", "Hz", "frequencies of the test", gaps=True)
+    used: Mask = variable("load mode", "1", "whether a frequency was used", dtype="bool")
+    left_out: Mask = variable("load", "1", "whether a load was left out", dtype="bool")
+    predictive: Array = variable("draw load mode", "Hz", "frequencies as measured", gaps=True)
+    offset_mean: Array = variable("mode", "1", "offset of ln test from ln model: posterior mean")
+    offset_sd: Array = variable("mode", "1", "offset of ln test from ln model: posterior sd")
     surrogate_error: Array = variable(
-        "load", "mode", unit="1", long_name="leave-one-out error of the surrogate about the posterior", gaps=True
+        "load mode", "1", "leave-one-out error of the surrogate about the posterior", gaps=True
     )
-    checked: Array = variable(
-        "load", "mode", unit="1", long_name="surrogate less model at points of the posterior, rms", gaps=True
-    )
+    checked: Array = variable("load mode", "1", "surrogate less model at points of the posterior, rms", gaps=True)
     fit: Fit
     singular: Identifiability
     notes: tuple[Note, ...] = ()
     laws: tuple[LawEvidence, ...] = ()
-    losses: Array | None = variable(
-        "load", "mode", unit="1", long_name="loss factors of the test", gaps=True, default=None
-    )
-    losses_used: Mask | None = variable(
-        "load", "mode", unit="1", long_name="whether a loss factor was used", dtype="bool", default=None
-    )
-    predictive_losses: Array | None = variable(
-        "draw", "load", "mode", unit="1", long_name="loss factors as measured", gaps=True, default=None
-    )
+    losses: Array | None = optional("load mode", "1", "loss factors of the test", gaps=True)
+    losses_used: Mask | None = optional("load mode", "1", "whether a loss factor was used", dtype="bool")
+    predictive_losses: Array | None = optional("draw load mode", "1", "loss factors as measured", gaps=True)
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and the parameters with what the test says of them."""

@@ -15,7 +15,7 @@ from faying.identify.sampling.surrogate import Surrogate
 from faying.identify.shares import Shares, shares
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
-from faying.result.fields import Recorded, load_texts, variable
+from faying.result.fields import Recorded, load_texts, optional, variable
 from faying.result.fields import listed as numbers
 from faying.result.provenance import Provenance
 from faying.result.result import preload_slope
@@ -83,63 +83,20 @@ class Prediction(Recorded):
     seed: int
     tolerance: float
     basis: tuple[int, int]
-    loads: Array = variable("load", unit="N", long_name="preload of the first bolt", name="preload")
-    values: Array = variable(
-        "sample", "input", unit="", long_name="values drawn, in the unit of each input", group="samples", name="value"
-    )
+    loads: Array = variable("load", "N", "preload of the first bolt", "preload")
+    values: Array = variable("sample input", "", "values drawn, in the unit of each input", "samples/value")
     frequencies: Array = variable(
-        "sample",
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="frequencies of elastic modes",
-        gaps=True,
-        group="samples",
-        name="frequency",
+        "sample load mode", "Hz", "frequencies of elastic modes", "samples/frequency", gaps=True
     )
-    loss_factors: Array = variable(
-        "sample",
-        "load",
-        "mode",
-        unit="1",
-        long_name="modal loss factors",
-        gaps=True,
-        group="samples",
-        name="loss_factor",
-    )
-    open_share: Array = variable(
-        "sample", "load", unit="1", long_name="share of the joints that is open", gaps=True, group="samples"
-    )
+    loss_factors: Array = variable("sample load mode", "1", "modal loss factors", "samples/loss_factor", gaps=True)
+    open_share: Array = variable("sample load", "1", "share of the joints that is open", "samples/", gaps=True)
     above_range_share: Array = variable(
-        "sample",
-        "load",
-        unit="1",
-        long_name="share of the contact above the end of the law",
-        gaps=True,
-        group="samples",
-        name="above_range_share",
+        "sample load", "1", "share of the contact above the end of the law", "samples/above_range_share", gaps=True
     )
-    paired: Array | None = variable(
-        "sample",
-        "load",
-        "test_mode",
-        unit="Hz",
-        long_name="frequencies of the test's modes",
-        gaps=True,
-        default=None,
-        group="samples",
-        name="frequency_of_test_mode",
+    paired: Array | None = optional(
+        "sample load test_mode", "Hz", "frequencies of the test's modes", "samples/frequency_of_test_mode", gaps=True
     )
-    test: Array | None = variable(
-        "load",
-        "test_mode",
-        unit="Hz",
-        long_name="measured frequencies",
-        gaps=True,
-        default=None,
-        group="test",
-        name="frequency",
-    )
+    test: Array | None = optional("load test_mode", "Hz", "measured frequencies", "test/frequency", gaps=True)
     test_source: str = ""
     reasons: dict[str, int] = field(default_factory=dict)
     discrepancy: float = 0.0

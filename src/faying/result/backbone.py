@@ -30,16 +30,13 @@ SHORT = 1e-3  # step of the logarithm of the amplitude for the slope of the freq
 class QuasiStaticCheck:
     """The same mode from statics alone: a quasi-static cycle under inertia forces, at some of the amplitudes."""
 
-    amplitude: Array = variable("witness", unit="m kg^1/2", long_name="modal amplitude")
-    acceleration: Array = variable("witness", unit="m/s2", long_name="acceleration at the point")
-    frequency: Array = variable("witness", unit="Hz", long_name="frequency of the static cycle")
-    damping: Array = variable("witness", unit="1", long_name="damping ratio of the static cycle")
-    frequency_change: Array = variable("witness", unit="1", long_name="static cycle over the curve's frequency, less 1")
+    amplitude: Array = variable("witness", "m kg^1/2", "modal amplitude")
+    acceleration: Array = variable("witness", "m/s2", "acceleration at the point")
+    frequency: Array = variable("witness", "Hz", "frequency of the static cycle")
+    damping: Array = variable("witness", "1", "damping ratio of the static cycle")
+    frequency_change: Array = variable("witness", "1", "static cycle over the curve's frequency, less 1")
     damping_change: Array = variable(
-        "witness",
-        unit="1",
-        long_name="static cycle over the joints' damping, less 1; NaN where there is none",
-        gaps=True,
+        "witness", "1", "static cycle over the joints' damping, less 1; NaN where there is none", gaps=True
     )
 
 
@@ -113,34 +110,30 @@ class Backbone(Recorded):
     bolts: tuple[str, ...]
     basis_size: int
     unknowns: int
-    at: Array = variable("axis", unit="m", long_name="point whose motion is given")
-    direction: Array = variable("axis", unit="1", long_name="direction of that motion")
-    acceleration: Array = variable("amplitude", unit="m/s2", long_name="acceleration amplitude at the point")
-    frequency: Array = variable("amplitude", unit="Hz", long_name="frequency")
-    damping: Array = variable("amplitude", unit="1", long_name="damping ratio to critical")
-    modal_amplitude: Array = variable("amplitude", unit="m kg^1/2", long_name="modal amplitude")
-    displacement: Array = variable("amplitude", unit="m", long_name="displacement amplitude at the point")
-    slipping: Array = variable("amplitude", unit="1", long_name="share of the joints' friction that slides in a cycle")
-    open: Array = variable("amplitude", unit="1", long_name="share of the joints' area that opens in a cycle")
-    other_modes: Array = variable("amplitude", unit="1", long_name="share of other modes and harmonics in the motion")
-    residual: Array = variable("amplitude", unit="1", long_name="residual of the full equations, in energy")
-    joint_slipping: Array = variable(
-        "amplitude", "joint", unit="1", long_name="share of a joint's friction that slides"
-    )
-    joint_open: Array = variable("amplitude", "joint", unit="1", long_name="share of a joint's area that opens")
-    energy: Array = variable("amplitude", "joint", unit="J", long_name="energy lost in each joint in a cycle")
-    bolt_force: Array = variable("amplitude", "bolt", unit="N", long_name="amplitude of each bolt's force")
-    slip_map: Array = variable("amplitude", "point", unit="1", long_name="share of the friction that slides")
-    open_map: Array = variable("amplitude", "point", unit="1", long_name="whether the point opens")
-    points: Array = variable("point", "axis", unit="m", long_name="points of the joints")
-    weights: Array = variable("point", unit="m2", long_name="area of each point")
-    joint_of_point: Index = variable("point", unit="1", long_name="joint of each point, from 0", dtype="i8")
-    measured_acceleration: Array = variable(
-        "measured", unit="m/s2", long_name="measured acceleration amplitude", default=()
-    )
-    measured_frequency: Array = variable("measured", unit="Hz", long_name="measured frequency", default=())
+    at: Array = variable("axis", "m", "point whose motion is given")
+    direction: Array = variable("axis", "1", "direction of that motion")
+    acceleration: Array = variable("amplitude", "m/s2", "acceleration amplitude at the point")
+    frequency: Array = variable("amplitude", "Hz", "frequency")
+    damping: Array = variable("amplitude", "1", "damping ratio to critical")
+    modal_amplitude: Array = variable("amplitude", "m kg^1/2", "modal amplitude")
+    displacement: Array = variable("amplitude", "m", "displacement amplitude at the point")
+    slipping: Array = variable("amplitude", "1", "share of the joints' friction that slides in a cycle")
+    open: Array = variable("amplitude", "1", "share of the joints' area that opens in a cycle")
+    other_modes: Array = variable("amplitude", "1", "share of other modes and harmonics in the motion")
+    residual: Array = variable("amplitude", "1", "residual of the full equations, in energy")
+    joint_slipping: Array = variable("amplitude joint", "1", "share of a joint's friction that slides")
+    joint_open: Array = variable("amplitude joint", "1", "share of a joint's area that opens")
+    energy: Array = variable("amplitude joint", "J", "energy lost in each joint in a cycle")
+    bolt_force: Array = variable("amplitude bolt", "N", "amplitude of each bolt's force")
+    slip_map: Array = variable("amplitude point", "1", "share of the friction that slides")
+    open_map: Array = variable("amplitude point", "1", "whether the point opens")
+    points: Array = variable("point axis", "m", "points of the joints")
+    weights: Array = variable("point", "m2", "area of each point")
+    joint_of_point: Index = variable("point", "1", "joint of each point, from 0", dtype="i8")
+    measured_acceleration: Array = variable("measured", "m/s2", "measured acceleration amplitude", default=())
+    measured_frequency: Array = variable("measured", "Hz", "measured frequency", default=())
     measured_damping: Array = variable(
-        "measured", unit="1", long_name="measured damping ratio; NaN where not measured", gaps=True, default=()
+        "measured", "1", "measured damping ratio; NaN where not measured", gaps=True, default=()
     )
     measured_source: str = ""
     laws: tuple[str, ...] = ()

@@ -14,41 +14,22 @@ class BoltNumbers:
     their signs belong to the signs of `Result.shapes`. Bounds are the least and the greatest value.
     """
 
-    compliance: Array = variable("load", "bolt", unit="m/N", long_name="compliance of the bolt, delta_S", gaps=True)
-    member_compliance: Array = variable(
-        "load", "bolt", unit="m/N", long_name="compliance of what the bolt clamps, delta_P"
-    )
-    load_factor: Array = variable(
-        "load", "bolt", unit="1", long_name="share of a load at the seats that the bolt takes, Phi", gaps=True
-    )
-    cone_compliance: Array = variable(
-        "bolt", unit="m/N", long_name="delta_P by the deformation cone of VDI 2230", gaps=True
-    )
+    compliance: Array = variable("load bolt", "m/N", "compliance of the bolt, delta_S", gaps=True)
+    member_compliance: Array = variable("load bolt", "m/N", "compliance of what the bolt clamps, delta_P")
+    load_factor: Array = variable("load bolt", "1", "share of a load at the seats that the bolt takes, Phi", gaps=True)
+    cone_compliance: Array = variable("bolt", "m/N", "delta_P by the deformation cone of VDI 2230", gaps=True)
     modal_force: Array = variable(
-        "load", "mode", "bolt", unit="N/m", long_name="force in the bolt per motion where a mode moves most", gaps=True
+        "load mode bolt", "N/m", "force in the bolt per motion where a mode moves most", gaps=True
     )
     modal_force_by_acceleration: Array = variable(
-        "load",
-        "mode",
-        "bolt",
-        unit="N s2/m",
-        long_name="force in the bolt per acceleration where a mode moves most",
-        gaps=True,
+        "load mode bolt", "N s2/m", "force in the bolt per acceleration where a mode moves most", gaps=True
     )
-    proof_share: Array = variable("load", "bolt", unit="1", long_name="force over proof load", gaps=True)
-    seat_pressure: Array = variable(
-        "load", "bolt", unit="Pa", long_name="greatest pressure under head or nut", gaps=True
-    )
-    seat_limit: Array = variable("bolt", unit="Pa", long_name="pressure that the softer seat bears", gaps=True)
-    embedding: Array = variable(
-        "bound", "load", "joint", "bolt", unit="m", long_name="approach that lasts, by the contact law", gaps=True
-    )
+    proof_share: Array = variable("load bolt", "1", "force over proof load", gaps=True)
+    seat_pressure: Array = variable("load bolt", "Pa", "greatest pressure under head or nut", gaps=True)
+    seat_limit: Array = variable("bolt", "Pa", "pressure that the softer seat bears", gaps=True)
+    embedding: Array = variable("bound load joint bolt", "m", "approach that lasts, by the contact law", gaps=True)
     embedding_loss: Array = variable(
-        "bound", "load", "bolt", unit="N", long_name="preload lost if all of it came after tightening", gaps=True
+        "bound load bolt", "N", "preload lost if all of it came after tightening", gaps=True
     )
-    embedding_guide: Array = variable(
-        "bolt", unit="m", long_name="embedding f_Z of thread, seats and joints by VDI 2230", gaps=True
-    )
-    embedding_guide_loss: Array = variable(
-        "load", "bolt", unit="N", long_name="preload lost by the embedding of VDI 2230", gaps=True
-    )
+    embedding_guide: Array = variable("bolt", "m", "embedding f_Z of thread, seats and joints by VDI 2230", gaps=True)
+    embedding_guide_loss: Array = variable("load bolt", "N", "preload lost by the embedding of VDI 2230", gaps=True)

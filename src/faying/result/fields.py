@@ -47,21 +47,38 @@ class Declared:
 
 
 def variable(
-    *dims: str,
+    dims: str,
     unit: str,
     long_name: str,
+    path: str = "",
+    *,
     dtype: str = "f8",
-    name: str = "",
     gaps: bool = False,
-    group: str = "",
     before: str = "",
     default: Any = MISSING,
 ) -> Any:
-    """Declare a field of a dataclass as an array with named dimensions; writer, reader, JSON and tables follow."""
+    """Declare a field of a dataclass as an array with named dimensions; writer, reader, JSON and tables follow.
+
+    dims: names of the dimensions, with blanks between; path: group and name in the file, "modes/frequency"; the name is
+    that of the field in "modes/", and the group is the root without a stroke; the rest as in `Declared`.
+    """
+    group, _, name = path.rpartition("/")
     declared = Declared(
-        name=name, dims=dims, unit=unit, long_name=long_name, dtype=dtype, gaps=gaps, group=group, before=before
+        name=name,
+        dims=tuple(dims.split()),
+        unit=unit,
+        long_name=long_name,
+        dtype=dtype,
+        gaps=gaps,
+        group=group,
+        before=before,
     )
     return field(metadata={KEY: declared}, **({} if default is MISSING else {"default": default}))
+
+
+def optional(dims: str, unit: str, long_name: str, path: str = "", *, dtype: str = "f8", gaps: bool = False) -> Any:
+    """Declare a `variable` that may be None, as where a study asks for less or a file is of an earlier version."""
+    return variable(dims, unit, long_name, path, dtype=dtype, gaps=gaps, default=None)
 
 
 class Recorded(Summary):

@@ -8,7 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
-from faying.result.fields import Recorded, in_units, listed, variable
+from faying.result.fields import Recorded, in_units, listed, optional, variable
 from faying.result.provenance import Provenance
 from faying.typing import Array, Index
 from faying.units import show
@@ -29,15 +29,13 @@ class LoadIntervals:
     """
 
     inputs: tuple[str, ...]
-    bolt_force: Array = variable("bound", "case", "bolt", unit="N", long_name="force of the bolt", gaps=True)
+    bolt_force: Array = variable("bound case bolt", "N", "force of the bolt", gaps=True)
     slip_use: Array = variable(
-        "bound", "case", "joint", unit="1", long_name="friction that the worst part needs, over its friction", gaps=True
+        "bound case joint", "1", "friction that the worst part needs, over its friction", gaps=True
     )
-    head_use: Array = variable(
-        "bound", "case", "bolt", unit="1", long_name="friction that a head needs, over its friction", gaps=True
-    )
-    opened: Array = variable("bound", "case", "joint", unit="1", long_name="share of the joint that opens", gaps=True)
-    check: Array = variable("case", unit="1", long_name="greatest departure from first order, over the answer")
+    head_use: Array = variable("bound case bolt", "1", "friction that a head needs, over its friction", gaps=True)
+    opened: Array = variable("bound case joint", "1", "share of the joint that opens", gaps=True)
+    check: Array = variable("case", "1", "greatest departure from first order, over the answer")
 
     @property
     def slip_margin(self) -> Array:
@@ -69,114 +67,58 @@ class LoadCases(Recorded):
     bolts: tuple[str, ...]
     joints: tuple[str, ...]
     superposition: Array = variable(
-        "case", unit="1", long_name="departure from the linear answer, over it: of displacement or force of a bolt"
+        "case", "1", "departure from the linear answer, over it: of displacement or force of a bolt"
     )
-    displacement: Array = variable("case", unit="m", long_name="greatest displacement of a node by the load")
-    error: Array = variable("case", unit="1", long_name="forces left over, over the load, in energy")
-    bolt_force: Array = variable("case", "bolt", unit="N", long_name="force of the bolt", group="bolts")
-    bolt_preload: Array = variable("bolt", unit="N", long_name="force of the bolt before any load", group="bolts")
-    bolt_force_linear: Array = variable(
-        "case", "bolt", unit="N", long_name="force of the bolt by superposition", group="bolts"
-    )
+    displacement: Array = variable("case", "m", "greatest displacement of a node by the load")
+    error: Array = variable("case", "1", "forces left over, over the load, in energy")
+    bolt_force: Array = variable("case bolt", "N", "force of the bolt", "bolts/")
+    bolt_preload: Array = variable("bolt", "N", "force of the bolt before any load", "bolts/")
+    bolt_force_linear: Array = variable("case bolt", "N", "force of the bolt by superposition", "bolts/")
     bolt_moment: Array = variable(
-        "case",
-        "bolt",
-        unit="N m",
-        long_name="greater bending moment of both ends of the bolt",
-        group="bolts",
-        gaps=True,
+        "case bolt", "N m", "greater bending moment of both ends of the bolt", "bolts/", gaps=True
     )
-    bolt_shear: Array = variable(
-        "case", "bolt", unit="N", long_name="force across the bolt at its head", group="bolts", gaps=True
-    )
-    working_load: Array = variable(
-        "case", "bolt", unit="N", long_name="load that pulls the parts apart at the bolt, F_A", group="bolts"
-    )
+    bolt_shear: Array = variable("case bolt", "N", "force across the bolt at its head", "bolts/", gaps=True)
+    working_load: Array = variable("case bolt", "N", "load that pulls the parts apart at the bolt, F_A", "bolts/")
     load_factor: Array = variable(
-        "case", "bolt", unit="1", long_name="change of the bolt's force over the working load", group="bolts", gaps=True
+        "case bolt", "1", "change of the bolt's force over the working load", "bolts/", gaps=True
     )
     transverse_load: Array = variable(
-        "case", "bolt", unit="N", long_name="load across the bolt that its part of the joint carries", group="bolts"
+        "case bolt", "N", "load across the bolt that its part of the joint carries", "bolts/"
     )
-    seat_pressure: Array = variable(
-        "case", "bolt", unit="Pa", long_name="mean pressure on the smaller seat", group="bolts", gaps=True
-    )
-    head_friction: Array = variable(
-        "bolt", unit="1", long_name="coefficient of friction under the head", group="bolts", gaps=True
-    )
+    seat_pressure: Array = variable("case bolt", "Pa", "mean pressure on the smaller seat", "bolts/", gaps=True)
+    head_friction: Array = variable("bolt", "1", "coefficient of friction under the head", "bolts/", gaps=True)
     head_friction_needed: Array = variable(
-        "case", "bolt", unit="1", long_name="force across the bolt over its force", group="bolts", gaps=True
+        "case bolt", "1", "force across the bolt over its force", "bolts/", gaps=True
     )
     dowels: tuple[str, ...] = ()
-    dowel_shear: Array | None = variable(
-        "case",
-        "dowel",
-        unit="N",
-        long_name="greatest shear force of the dowel by the load",
-        group="dowels",
-        default=None,
+    dowel_shear: Array | None = optional("case dowel", "N", "greatest shear force of the dowel by the load", "dowels/")
+    dowel_bearing: Array | None = optional(
+        "case dowel", "Pa", "greatest force on a wall by the load over diameter and depth of its hole", "dowels/"
     )
-    dowel_bearing: Array | None = variable(
-        "case",
-        "dowel",
-        unit="Pa",
-        long_name="greatest force on a wall by the load over diameter and depth of its hole",
-        group="dowels",
-        default=None,
-    )
-    normal_force: Array = variable("case", "joint", unit="N", long_name="normal force on the joint", group="joints")
-    normal_preload: Array = variable(
-        "joint", unit="N", long_name="normal force on the joint before any load", group="joints"
-    )
-    friction: Array = variable("joint", unit="1", long_name="coefficient of friction", group="joints", gaps=True)
-    shear_force: Array = variable(
-        "case", "joint", unit="N", long_name="resultant of the shear on the joint by the load", group="joints"
-    )
-    torque: Array = variable(
-        "case", "joint", unit="N m", long_name="torque of the shear about the normal of the joint", group="joints"
-    )
-    mean_pressure: Array = variable("case", "joint", unit="Pa", long_name="mean pressure on the joint", group="joints")
-    greatest_pressure: Array = variable("case", "joint", unit="Pa", long_name="greatest pressure", group="joints")
-    opened: Array = variable(
-        "case", "joint", unit="1", long_name="share of the area in contact under preload that is open", group="joints"
-    )
-    sliding: Array = variable(
-        "case", "joint", unit="1", long_name="share of the area in contact that slides", group="joints", gaps=True
-    )
+    normal_force: Array = variable("case joint", "N", "normal force on the joint", "joints/")
+    normal_preload: Array = variable("joint", "N", "normal force on the joint before any load", "joints/")
+    friction: Array = variable("joint", "1", "coefficient of friction", "joints/", gaps=True)
+    shear_force: Array = variable("case joint", "N", "resultant of the shear on the joint by the load", "joints/")
+    torque: Array = variable("case joint", "N m", "torque of the shear about the normal of the joint", "joints/")
+    mean_pressure: Array = variable("case joint", "Pa", "mean pressure on the joint", "joints/")
+    greatest_pressure: Array = variable("case joint", "Pa", "greatest pressure", "joints/")
+    opened: Array = variable("case joint", "1", "share of the area in contact under preload that is open", "joints/")
+    sliding: Array = variable("case joint", "1", "share of the area in contact that slides", "joints/", gaps=True)
     friction_needed: Array = variable(
-        "case", "joint", unit="1", long_name="shear over normal force of all of the joint", group="joints", gaps=True
+        "case joint", "1", "shear over normal force of all of the joint", "joints/", gaps=True
     )
-    friction_needed_worst: Array = variable(
-        "case", "joint", unit="1", long_name="the same round the worst bolt", group="joints", gaps=True
-    )
-    worst_bolt: Index = variable(
-        "case", "joint", unit="1", long_name="the bolt round which it is, from 0", dtype="i8", group="joints"
-    )
-    dissipated: Array = variable(
-        "case", "joint", unit="J", long_name="work of friction on the way to this load", group="joints"
-    )
-    rest_frequency: Array | None = variable(
-        "mode", unit="Hz", long_name="frequency under preload alone", group="modes", default=None
-    )
-    frequency: Array | None = variable(
-        "case",
-        "mode",
-        unit="Hz",
-        long_name="frequency of that mode under the load",
-        group="modes",
-        default=None,
-    )
-    likeness: Array | None = variable(
-        "case", "mode", unit="1", long_name="MAC of both shapes, weighted by mass", group="modes", default=None
-    )
-    positions: Array = variable("point", "axis", unit="m", long_name="points of the joints", group="points")
-    areas: Array = variable("point", unit="m2", long_name="area of each point", group="points")
-    joint_of_point: Index = variable(
-        "point", unit="1", long_name="joint of each point, from 0", dtype="i8", group="points"
-    )
-    rest_pressure: Array = variable("point", unit="Pa", long_name="pressure before any load", group="points")
-    pressure: Array = variable("case", "point", unit="Pa", long_name="pressure", group="points")
-    shear: Array = variable("case", "point", unit="Pa", long_name="shear by the load", group="points")
+    friction_needed_worst: Array = variable("case joint", "1", "the same round the worst bolt", "joints/", gaps=True)
+    worst_bolt: Index = variable("case joint", "1", "the bolt round which it is, from 0", "joints/", dtype="i8")
+    dissipated: Array = variable("case joint", "J", "work of friction on the way to this load", "joints/")
+    rest_frequency: Array | None = optional("mode", "Hz", "frequency under preload alone", "modes/")
+    frequency: Array | None = optional("case mode", "Hz", "frequency of that mode under the load", "modes/")
+    likeness: Array | None = optional("case mode", "1", "MAC of both shapes, weighted by mass", "modes/")
+    positions: Array = variable("point axis", "m", "points of the joints", "points/")
+    areas: Array = variable("point", "m2", "area of each point", "points/")
+    joint_of_point: Index = variable("point", "1", "joint of each point, from 0", "points/", dtype="i8")
+    rest_pressure: Array = variable("point", "Pa", "pressure before any load", "points/")
+    pressure: Array = variable("case point", "Pa", "pressure", "points/")
+    shear: Array = variable("case point", "Pa", "shear by the load", "points/")
     intervals: LoadIntervals | None = None
     notes: tuple[Note, ...] = ()
     provenance: Provenance = field(default_factory=lambda: Provenance(study="", files={}, versions={}, date=""))

@@ -18,7 +18,7 @@ from faying.misuse import checked_call, shortened
 from faying.notes import Note, grouped
 from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
-from faying.result.fields import Recorded, in_units, load_texts, variable
+from faying.result.fields import Recorded, in_units, load_texts, optional, variable
 from faying.result.interval import Interval
 from faying.result.provenance import Provenance
 from faying.text import listed
@@ -45,22 +45,13 @@ class MeasuredComparison:
     """Listed frequencies of a hammer test beside the study's, and the mode (from 0) that each was paired with."""
 
     source: str
-    frequencies: Array = variable("load", "test_mode", unit="Hz", long_name="measured frequencies")
-    predicted: Array = variable("load", "test_mode", unit="Hz", long_name="frequencies of the paired modes", gaps=True)
-    modes: Index = variable("load", "test_mode", unit="1", long_name="index of the paired mode, -1: none", dtype="i8")
-    published: Array | None = variable(
-        "load", "test_mode", unit="Hz", long_name="frequencies of a published model", default=None
-    )
+    frequencies: Array = variable("load test_mode", "Hz", "measured frequencies")
+    predicted: Array = variable("load test_mode", "Hz", "frequencies of the paired modes", gaps=True)
+    modes: Index = variable("load test_mode", "1", "index of the paired mode, -1: none", dtype="i8")
+    published: Array | None = optional("load test_mode", "Hz", "frequencies of a published model")
     published_name: str = "published"
-    alternatives: Array | None = variable(
-        "law",
-        "load",
-        "test_mode",
-        unit="Hz",
-        long_name="frequencies under another law",
-        gaps=True,
-        name="predicted_by_law",
-        default=None,
+    alternatives: Array | None = optional(
+        "law load test_mode", "Hz", "frequencies under another law", "predicted_by_law", gaps=True
     )
     kind: str = "test"  # or "model", where the frequencies are those of somebody's model
 
@@ -74,24 +65,18 @@ class MeasuredComparison:
 class Receptance:
     """Frequency response at every load; error: the largest of the residuals that were checked [-]."""
 
-    frequencies: Array = variable("response_frequency", unit="Hz", long_name="frequencies of the response")
-    values: Complex = variable(
-        "load", "response_frequency", "output", "input", unit="m/N", long_name="receptance", dtype="c16"
-    )
-    input_points: Array = variable("input", "axis", unit="m", long_name="points of the forces")
-    input_directions: Array = variable("input", "axis", unit="1", long_name="directions of the forces")
-    output_points: Array = variable("output", "axis", unit="m", long_name="points of the motion")
-    output_directions: Array = variable("output", "axis", unit="1", long_name="directions of the motion")
-    error: Array = variable("load", unit="1", long_name="largest residual of the full equations that was checked")
-    bolt_forces: Complex | None = variable(
-        "load",
-        "response_frequency",
-        "bolt",
-        "input",
-        unit="1",
-        long_name="force in each bolt per force, 0 for a bolt without a shank",
+    frequencies: Array = variable("response_frequency", "Hz", "frequencies of the response")
+    values: Complex = variable("load response_frequency output input", "m/N", "receptance", dtype="c16")
+    input_points: Array = variable("input axis", "m", "points of the forces")
+    input_directions: Array = variable("input axis", "1", "directions of the forces")
+    output_points: Array = variable("output axis", "m", "points of the motion")
+    output_directions: Array = variable("output axis", "1", "directions of the motion")
+    error: Array = variable("load", "1", "largest residual of the full equations that was checked")
+    bolt_forces: Complex | None = optional(
+        "load response_frequency bolt input",
+        "1",
+        "force in each bolt per force, 0 for a bolt without a shank",
         dtype="c16",
-        default=None,
     )
 
     @property
@@ -128,426 +113,159 @@ class Result(Recorded):
     COMMAND: ClassVar[str] = "faying run STUDY.toml"
 
     title: str
-    loads: Array = variable("load", unit="N", long_name="preload of the first bolt", name="preload", before="load")
-    frequencies: Array = variable("load", "mode", unit="Hz", long_name="frequency", group="modes", name="frequency")
+    loads: Array = variable("load", "N", "preload of the first bolt", "preload", before="load")
+    frequencies: Array = variable("load mode", "Hz", "frequency", "modes/frequency")
     loss_factors: Array = variable(
-        "load",
-        "mode",
-        unit="1",
-        long_name="loss factor, NaN where no joint predicts one",
-        gaps=True,
-        group="modes",
-        name="loss_factor",
+        "load mode", "1", "loss factor, NaN where no joint predicts one", "modes/loss_factor", gaps=True
     )
     loss_error: Array = variable(
-        "load",
-        "mode",
-        unit="1",
-        long_name="estimated relative error of the loss factor",
-        group="modes",
-        name="loss_factor_error",
+        "load mode", "1", "estimated relative error of the loss factor", "modes/loss_factor_error"
     )
-    free: Array = variable("mode", unit="Hz", long_name="frequency with the faces apart", group="modes")
-    bonded: Array = variable("mode", unit="Hz", long_name="frequency with the faces bonded", group="modes")
-    rigid: Array = variable(
-        "rigid_motion", unit="Hz", long_name="largest frequency of each rigid motion, ideally 0", group="modes"
-    )
+    free: Array = variable("mode", "Hz", "frequency with the faces apart", "modes/")
+    bonded: Array = variable("mode", "Hz", "frequency with the faces bonded", "modes/")
+    rigid: Array = variable("rigid_motion", "Hz", "largest frequency of each rigid motion, ideally 0", "modes/")
     mac: Array = variable(
-        "load",
-        "mode",
-        "mode_other",
-        unit="1",
-        long_name="MAC by mass of the modes at the first load with those at each",
-        group="modes",
+        "load mode mode_other", "1", "MAC by mass of the modes at the first load with those at each", "modes/"
     )
-    points: Array = variable(
-        "point", "axis", unit="m", long_name="points of the joints", group="points", name="position"
-    )
-    weights: Array = variable("point", unit="m2", long_name="area of each point", group="points", name="area")
-    joint_of_point: Index = variable(
-        "point", unit="1", long_name="joint of each point, from 0", dtype="i8", group="points", name="joint_number"
-    )
-    pressure: Array = variable("load", "point", unit="Pa", long_name="contact pressure", group="points")
-    k_n: Array = variable(
-        "load", "point", unit="Pa/m", long_name="normal stiffness per area, as assembled", group="points"
-    )
-    k_t: Array = variable(
-        "load", "point", unit="Pa/m", long_name="tangential stiffness per area, as assembled", group="points"
-    )
-    slipping: Array = variable(
-        "load",
-        "joint",
-        unit="1",
-        long_name="share of the area at the limit of friction",
-        group="joints",
-        name="slipping_share",
-    )
-    total_k_n: Array = variable(
-        "load", "joint", unit="N/m", long_name="sum of the normal springs", group="joints", name="k_n"
-    )
-    total_k_t: Array = variable(
-        "load", "joint", unit="N/m", long_name="sum of the tangential springs", group="joints", name="k_t"
-    )
-    bolt_forces: Array = variable(
-        "load", "bolt", unit="N", long_name="force left when all bolts are tight", group="bolts", name="force"
-    )
-    imbalance: Array = variable(
-        "load", unit="1", long_name="residual force of the preload over the load", group="solution"
-    )
-    newton_steps: Index = variable(
-        "load", unit="1", long_name="Newton steps of the preload", dtype="i8", group="solution"
-    )
-    outline: Array = variable(
-        "node", "axis", unit="m", long_name="nodes of the outer surface", group="surface", name="position"
-    )
-    triangles: Index = variable(
-        "triangle", "corner", unit="1", long_name="triangles between them", dtype="i8", group="surface"
-    )
-    shapes: Any = variable(
-        "load",
-        "mode",
-        "node",
-        "axis",
-        unit="kg^-1/2",
-        long_name="mass-normalised mode shapes",
-        dtype="f4",
-        group="surface",
-        name="shape",
-    )
-    shapes_imaginary: Any = variable(
-        "load",
-        "mode",
-        "node",
-        "axis",
-        unit="kg^-1/2",
-        long_name="imaginary part of the complex mode shapes, scaled as shapes: the motion is the real part of "
+    points: Array = variable("point axis", "m", "points of the joints", "points/position")
+    weights: Array = variable("point", "m2", "area of each point", "points/area")
+    joint_of_point: Index = variable("point", "1", "joint of each point, from 0", "points/joint_number", dtype="i8")
+    pressure: Array = variable("load point", "Pa", "contact pressure", "points/")
+    k_n: Array = variable("load point", "Pa/m", "normal stiffness per area, as assembled", "points/")
+    k_t: Array = variable("load point", "Pa/m", "tangential stiffness per area, as assembled", "points/")
+    slipping: Array = variable("load joint", "1", "share of the area at the limit of friction", "joints/slipping_share")
+    total_k_n: Array = variable("load joint", "N/m", "sum of the normal springs", "joints/k_n")
+    total_k_t: Array = variable("load joint", "N/m", "sum of the tangential springs", "joints/k_t")
+    bolt_forces: Array = variable("load bolt", "N", "force left when all bolts are tight", "bolts/force")
+    imbalance: Array = variable("load", "1", "residual force of the preload over the load", "solution/")
+    newton_steps: Index = variable("load", "1", "Newton steps of the preload", "solution/", dtype="i8")
+    outline: Array = variable("node axis", "m", "nodes of the outer surface", "surface/position")
+    triangles: Index = variable("triangle corner", "1", "triangles between them", "surface/", dtype="i8")
+    shapes: Any = variable("load mode node axis", "kg^-1/2", "mass-normalised mode shapes", "surface/shape", dtype="f4")
+    shapes_imaginary: Any = optional(
+        "load mode node axis",
+        "kg^-1/2",
+        "imaginary part of the complex mode shapes, scaled as shapes: the motion is the real part of "
         "(shapes + i shapes_imaginary) exp(i phase)",
+        "surface/shape_imaginary",
         dtype="f4",
-        default=None,
-        group="surface",
-        name="shape_imaginary",
     )
-    part_of_triangle: Index | None = variable(
-        "triangle", unit="1", long_name="part of each triangle, from 0", dtype="i8", default=None, group="surface"
+    part_of_triangle: Index | None = optional("triangle", "1", "part of each triangle, from 0", "surface/", dtype="i8")
+    face_of_triangle: Index | None = optional(
+        "triangle", "1", "named face of each triangle, from 0, -1: none", "surface/", dtype="i8"
     )
-    face_of_triangle: Index | None = variable(
-        "triangle",
-        unit="1",
-        long_name="named face of each triangle, from 0, -1: none",
-        dtype="i8",
-        default=None,
-        group="surface",
+    part_masses: Array | None = optional(
+        "part", "kg", "mass of each part, without bolts and point masses", "parts/mass"
     )
-    part_masses: Array | None = variable(
-        "part",
-        unit="kg",
-        long_name="mass of each part, without bolts and point masses",
-        default=None,
-        group="parts",
-        name="mass",
+    slip: Array | None = optional(
+        "load point", "m", "tangential displacement of the second face against the first under the preload", "points/"
     )
-    slip: Array | None = variable(
-        "load",
-        "point",
-        unit="m",
-        long_name="tangential displacement of the second face against the first under the preload",
-        default=None,
-        group="points",
+    gap: Array | None = optional("point", "m", "distance of the faces before any load, form included", "points/")
+    bolt_seats: Array | None = optional(
+        "bolt end axis", "m", "where the axis of each bolt meets its seats", "bolts/seat"
     )
-    gap: Array | None = variable(
-        "point",
-        unit="m",
-        long_name="distance of the faces before any load, form included",
-        default=None,
-        group="points",
+    bolt_diameters: Array | None = optional(
+        "bolt", "m", "diameter of each shank, NaN where none is given", "bolts/diameter", gaps=True
     )
-    bolt_seats: Array | None = variable(
-        "bolt",
-        "end",
-        "axis",
-        unit="m",
-        long_name="where the axis of each bolt meets its seats",
-        default=None,
-        group="bolts",
-        name="seat",
-    )
-    bolt_diameters: Array | None = variable(
-        "bolt",
-        unit="m",
-        long_name="diameter of each shank, NaN where none is given",
+    bolt_extents: Array | None = optional(
+        "bolt edge",
+        "m",
+        "inner and outer diameter of the seat of each bolt, NaN for a bolt that is a part",
+        "bolts/seat_diameter",
         gaps=True,
-        default=None,
-        group="bolts",
-        name="diameter",
     )
-    bolt_extents: Array | None = variable(
-        "bolt",
-        "edge",
-        unit="m",
-        long_name="inner and outer diameter of the seat of each bolt, NaN for a bolt that is a part",
-        gaps=True,
-        default=None,
-        group="bolts",
-        name="seat_diameter",
-    )
-    dowel_ends: Array | None = variable(
-        "dowel",
-        "end",
-        "axis",
-        unit="m",
-        long_name="where each dowel begins and ends",
-        default=None,
-        group="dowels",
-        name="ends",
-    )
-    dowel_diameters: Array | None = variable(
-        "dowel", unit="m", long_name="diameter of each dowel", default=None, group="dowels", name="diameter"
-    )
-    dowel_shear: Array | None = variable(
-        "load",
-        "dowel",
-        unit="N",
-        long_name="greatest shear force of the dowel when all bolts are tight",
-        default=None,
-        group="dowels",
-        name="shear",
+    dowel_ends: Array | None = optional("dowel end axis", "m", "where each dowel begins and ends", "dowels/ends")
+    dowel_diameters: Array | None = optional("dowel", "m", "diameter of each dowel", "dowels/diameter")
+    dowel_shear: Array | None = optional(
+        "load dowel", "N", "greatest shear force of the dowel when all bolts are tight", "dowels/shear"
     )
     outside_share: Array = variable(
-        "load",
-        unit="1",
-        long_name="share of the joints' stiffness where their law is outside its validity range",
-        group="joints",
+        "load", "1", "share of the joints' stiffness where their law is outside its validity range", "joints/"
     )
     above_range_share: Array = variable(
-        "load",
-        unit="1",
-        long_name="share of the joints above the end of their law",
-        group="joints",
-        name="above_range_share",
+        "load", "1", "share of the joints above the end of their law", "joints/above_range_share"
     )
-    low: Array | None = variable(
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="frequency at the lower end of the laws' range",
-        default=None,
-        group="modes",
-        name="frequency_low",
+    low: Array | None = optional(
+        "load mode", "Hz", "frequency at the lower end of the laws' range", "modes/frequency_low"
     )
-    high: Array | None = variable(
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="frequency at the upper end of the laws' range",
-        default=None,
-        group="modes",
-        name="frequency_high",
+    high: Array | None = optional(
+        "load mode", "Hz", "frequency at the upper end of the laws' range", "modes/frequency_high"
     )
-    interval_low: Array | None = variable(
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="5 % of the frequency, of all that is not known",
-        default=None,
-        group="modes",
+    interval_low: Array | None = optional("load mode", "Hz", "5 % of the frequency, of all that is not known", "modes/")
+    interval_high: Array | None = optional(
+        "load mode", "Hz", "95 % of the frequency, of all that is not known", "modes/"
     )
-    interval_high: Array | None = variable(
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="95 % of the frequency, of all that is not known",
-        default=None,
-        group="modes",
+    interval_offsets: Array | None = optional(
+        "source end load mode", "1", "change of ln f at 5 and at 95 % of one thing that is not known", "modes/"
     )
-    interval_offsets: Array | None = variable(
-        "source",
-        "end",
-        "load",
-        "mode",
-        unit="1",
-        long_name="change of ln f at 5 and at 95 % of one thing that is not known",
-        default=None,
-        group="modes",
+    mesh_error: Array | None = optional(
+        "load mode", "1", "estimated relative error of the frequency by the mesh", "modes/"
     )
-    mesh_error: Array | None = variable(
-        "load",
-        "mode",
-        unit="1",
-        long_name="estimated relative error of the frequency by the mesh",
-        default=None,
-        group="modes",
+    levels: Array | None = optional(
+        "level", "m/s2", "peak acceleration of the point that moves most", "modes/level_acceleration"
     )
-    levels: Array | None = variable(
-        "level",
-        unit="m/s2",
-        long_name="peak acceleration of the point that moves most",
-        default=None,
-        group="modes",
-        name="level_acceleration",
+    level_frequencies: Array | None = optional("load level mode", "Hz", "frequency at a level", "modes/")
+    level_damping: Array | None = optional("load level mode", "1", "damping ratio at a level", "modes/")
+    level_low: Array | None = optional("load level mode", "1", "lower end of damping at a level", "modes/")
+    level_high: Array | None = optional("load level mode", "1", "upper end of damping at a level", "modes/")
+    level_slip: Array | None = optional("load level mode", "1", "damping by slip at a level", "modes/")
+    level_error: Array | None = optional("load level mode", "1", "error of damping by slip", "modes/")
+    above_range_frequencies: Array | None = optional(
+        "load mode", "Hz", "frequency with what is above the law's end bonded", "modes/frequency_bonded_above"
     )
-    level_frequencies: Array | None = variable(
-        "load", "level", "mode", unit="Hz", long_name="frequency at a level", default=None, group="modes"
-    )
-    level_damping: Array | None = variable(
-        "load", "level", "mode", unit="1", long_name="damping ratio at a level", default=None, group="modes"
-    )
-    level_low: Array | None = variable(
-        "load", "level", "mode", unit="1", long_name="lower end of damping at a level", default=None, group="modes"
-    )
-    level_high: Array | None = variable(
-        "load", "level", "mode", unit="1", long_name="upper end of damping at a level", default=None, group="modes"
-    )
-    level_slip: Array | None = variable(
-        "load", "level", "mode", unit="1", long_name="damping by slip at a level", default=None, group="modes"
-    )
-    level_error: Array | None = variable(
-        "load", "level", "mode", unit="1", long_name="error of damping by slip", default=None, group="modes"
-    )
-    above_range_frequencies: Array | None = variable(
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="frequency with what is above the law's end bonded",
-        default=None,
-        group="modes",
-        name="frequency_bonded_above",
-    )
-    above_range_loss_factors: Array | None = variable(
-        "load",
-        "mode",
-        unit="1",
-        long_name="loss factor with what is above the law's end bonded",
+    above_range_loss_factors: Array | None = optional(
+        "load mode",
+        "1",
+        "loss factor with what is above the law's end bonded",
+        "modes/loss_factor_bonded_above",
         gaps=True,
-        default=None,
-        group="modes",
-        name="loss_factor_bonded_above",
     )
-    wave_seeds: Index | None = variable(
-        "draw",
-        unit="1",
-        long_name="draws of waves on the faces, by their seed",
-        dtype="i8",
-        default=None,
-        group="waves",
-        name="seed",
+    wave_seeds: Index | None = optional(
+        "draw", "1", "draws of waves on the faces, by their seed", "waves/seed", dtype="i8"
     )
-    wave_frequencies: Array | None = variable(
-        "draw",
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="frequency with waves on the faces",
-        default=None,
-        group="waves",
-        name="frequency",
+    wave_frequencies: Array | None = optional(
+        "draw load mode", "Hz", "frequency with waves on the faces", "waves/frequency"
     )
-    wave_slopes: Array | None = variable(
-        "draw",
-        "mode",
-        unit="Hz/N",
-        long_name="change of frequency with preload with waves",
-        default=None,
-        group="waves",
-        name="slope",
+    wave_slopes: Array | None = optional(
+        "draw mode", "Hz/N", "change of frequency with preload with waves", "waves/slope"
     )
-    wave_rms: Array | None = variable(
-        "joint",
-        unit="m",
-        long_name="rms of the waves of each face, NaN where none are drawn",
+    wave_rms: Array | None = optional(
+        "joint", "m", "rms of the waves of each face, NaN where none are drawn", "waves/rms", gaps=True
+    )
+    wave_lengths: Array | None = optional(
+        "joint end", "m", "shortest and longest wave that is drawn, NaN where none are", "waves/wave_length", gaps=True
+    )
+    alternative_frequencies: Array | None = optional(
+        "law load mode", "Hz", "frequency under another law", "laws/frequency", gaps=True
+    )
+    alternative_loss_factors: Array | None = optional(
+        "law load mode", "1", "loss factor under another law", "laws/loss_factor", gaps=True
+    )
+    alternative_above_range_frequencies: Array | None = optional(
+        "law load mode",
+        "Hz",
+        "frequency under another law with what is above its end bonded",
+        "laws/frequency_bonded_above",
         gaps=True,
-        default=None,
-        group="waves",
-        name="rms",
     )
-    wave_lengths: Array | None = variable(
-        "joint",
-        "end",
-        unit="m",
-        long_name="shortest and longest wave that is drawn, NaN where none are",
+    alternative_outside_share: Array | None = optional(
+        "law load",
+        "1",
+        "share of the joints' stiffness where another law is outside its validity range",
+        "laws/outside_share",
         gaps=True,
-        default=None,
-        group="waves",
-        name="wave_length",
     )
-    alternative_frequencies: Array | None = variable(
-        "law",
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="frequency under another law",
-        gaps=True,
-        default=None,
-        group="laws",
-        name="frequency",
+    alternative_above_range_share: Array | None = optional(
+        "law load", "1", "share of the joints above the end of another law", "laws/above_range_share", gaps=True
     )
-    alternative_loss_factors: Array | None = variable(
-        "law",
-        "load",
-        "mode",
-        unit="1",
-        long_name="loss factor under another law",
-        gaps=True,
-        default=None,
-        group="laws",
-        name="loss_factor",
+    alternative_reach: Array | None = optional(
+        "law", "Pa", "pressure at which another law ends", "laws/end_pressure", gaps=True
     )
-    alternative_above_range_frequencies: Array | None = variable(
-        "law",
-        "load",
-        "mode",
-        unit="Hz",
-        long_name="frequency under another law with what is above its end bonded",
-        gaps=True,
-        default=None,
-        group="laws",
-        name="frequency_bonded_above",
+    thermal_conductance: Array | None = optional(
+        "load joint", "W/K", "conductance of heat, clean metal in vacuum", "joints/", gaps=True
     )
-    alternative_outside_share: Array | None = variable(
-        "law",
-        "load",
-        unit="1",
-        long_name="share of the joints' stiffness where another law is outside its validity range",
-        gaps=True,
-        default=None,
-        group="laws",
-        name="outside_share",
-    )
-    alternative_above_range_share: Array | None = variable(
-        "law",
-        "load",
-        unit="1",
-        long_name="share of the joints above the end of another law",
-        gaps=True,
-        default=None,
-        group="laws",
-        name="above_range_share",
-    )
-    alternative_reach: Array | None = variable(
-        "law",
-        unit="Pa",
-        long_name="pressure at which another law ends",
-        gaps=True,
-        default=None,
-        group="laws",
-        name="end_pressure",
-    )
-    thermal_conductance: Array | None = variable(
-        "load",
-        "joint",
-        unit="W/K",
-        long_name="conductance of heat, clean metal in vacuum",
-        gaps=True,
-        default=None,
-        group="joints",
-    )
-    electrical_conductance: Array | None = variable(
-        "load",
-        "joint",
-        unit="S",
-        long_name="conductance of current, clean metal",
-        gaps=True,
-        default=None,
-        group="joints",
+    electrical_conductance: Array | None = optional(
+        "load joint", "S", "conductance of current, clean metal", "joints/", gaps=True
     )
     interval_sources: tuple[str, ...] = ()
     alternatives: tuple[str, ...] = ()
