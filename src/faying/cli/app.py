@@ -4,9 +4,11 @@ from pathlib import Path
 
 import click
 
+from faying.cli.options import PATH
+
 
 @click.command()
-@click.argument("place", metavar="[FOLDER|STUDY]", type=click.Path(path_type=Path), default=".")
+@click.argument("place", metavar="[FOLDER|STUDY]", type=PATH, default=".")
 @click.option("--port", type=click.IntRange(0, 65535), default=0, help="Port to listen on [a free one].")
 @click.option("--open/--no-open", "opened", default=True, help="Open the page in the browser.")
 def command(place: Path, port: int, opened: bool) -> None:

@@ -5,12 +5,15 @@ from typing import Any
 
 import click
 
+from faying import units
+from faying.cli.options import PATH
 from faying.decks.programs import SOLVERS
+from faying.errors import InputError
 from faying.text import json_text
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.argument("model", type=click.Path(path_type=Path))
+@click.command()
+@click.argument("model", type=PATH)
 @click.option("--face-a", required=True, metavar="NAME", help="Face, set or component of the rough part.")
 @click.option("--face-b", required=True, metavar="NAME", help="The face it meets.")
 @click.option("--unit", required=True, help='Unit of the coordinates, such as "mm"; no mesh file says.')
@@ -18,7 +21,7 @@ from faying.text import json_text
 @click.option(
     "--law",
     required=True,
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="STUDY.toml",
     help="Study with surface, law and materials; with --pressure solve also with bolts.",
 )
@@ -51,16 +54,16 @@ from faying.text import json_text
     help="paper: the JK paper's dampers eta sqrt(M k), which depend on the mesh.",
 )
 @click.option("--to", "solver", type=click.Choice(SOLVERS), help="The solver to write for.")
-@click.option("--out", type=click.Path(path_type=Path), help="Folder of the decks (default: joint/ next to the model).")
+@click.option("--out", type=PATH, help="Folder of the decks (default: joint/ next to the model).")
 @click.option("--any-size", is_flag=True, help="Accept a joint of any area.")
 @click.option(
     "--matrices",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE",
     help="Stiffness and mass of the bare parts: job.sti of CalculiX, .mtx, DMIG; gives modes with the joint.",
 )
-@click.option("--mass", type=click.Path(path_type=Path), help="With a .mtx: file of the mass matrix.")
-@click.option("--dofs", type=click.Path(path_type=Path), help='With a .mtx: "node direction" of each row.')
+@click.option("--mass", type=PATH, help="With a .mtx: file of the mass matrix.")
+@click.option("--dofs", type=PATH, help='With a .mtx: "node direction" of each row.')
 @click.option("--stiffness-unit", metavar="UNIT", help='Unit of the stiffness, such as "N/mm".')
 @click.option("--mass-unit", metavar="UNIT", help='Unit of the mass, such as "t".')
 @click.option(
@@ -101,9 +104,7 @@ def command(
 
     MODEL: .inp of Abaqus or CalculiX, .bdf, .msh, .cdb.
     """
-    from faying import units
     from faying.decks.write import write
-    from faying.errors import InputError
     from faying.export.attach import attach
     from faying.export.bare import modes_with_joint
     from faying.study import Study

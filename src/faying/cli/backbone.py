@@ -1,17 +1,21 @@
 """faying backbone STUDY.toml --friction 0.2"""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 
+from faying import units
+from faying.cli.options import FILE, PATH, show
 from faying.cli.progress import Shown, progress_options
+from faying.errors import InputError
+from faying.files import new_folder
 from faying.output.terminal import folded
-from faying.text import json_text
 
 
 @click.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option(
     "--mode", type=click.IntRange(1, 10_000), help="Elastic mode, counted from the lowest [that of the study, or 1]."
 )
@@ -34,13 +38,9 @@ from faying.text import json_text
     is_flag=True,
     help="Curves of all modes by secant passes, without harmonics; --mode compares one with harmonic balance.",
 )
-@click.option("--measured", multiple=True, type=click.Path(path_type=Path), help="CSV of measured points to draw.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="NetCDF file (default: backbone.nc in the folder that run writes to).",
-)
-@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the curves (svg, png, pdf).")
+@click.option("--measured", multiple=True, type=PATH, help="CSV of measured points to draw.")
+@click.option("--out", type=PATH, help="NetCDF file (default: backbone.nc in the folder that run writes to).")
+@click.option("--plot", type=FILE, help="Draw the curves (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print the curves as JSON.")
 @progress_options
 def command(study: Path, **options: Any) -> None:
@@ -50,7 +50,6 @@ def command(study: Path, **options: Any) -> None:
     """
     from faying.backbones.backbone import backbones
     from faying.backbones.choice import names
-    from faying.files import new_folder
     from faying.measured.ring_down import MeasuredBackbone
     from faying.result import backbone_figure as drawing
     from faying.study import Study
@@ -68,32 +67,23 @@ def command(study: Path, **options: Any) -> None:
     out = out or plan.results / "backbone.nc"
     progress = Shown("backbone", options["progress"])
     with new_folder(out.parent, "give another file with --out"), progress as report:
-        curves = backbones(
-            plan,
-            choice,
-            loads=loads,
-            out=out,
-            report=report,
-        )
+        curves = backbones(plan, choice, loads=loads, out=out, report=report)
     files = names(out, len(curves))
     if plot:
         files.append(save(drawing.figure(curves, measured), plot))
-    if options["as_json"]:
-        click.echo(json_text({"curves": [c.to_dict() for c in curves], "files": [str(f) for f in files]}))
-        return
-    for curve in curves:
-        click.echo(text(curve))
-    click.echo(f"\nwritten to {', '.join(str(file) for file in files)}")
+    show(
+        options["as_json"],
+        lambda: {"curves": [curve.to_dict() for curve in curves]},
+        lambda: "\n".join(map(text, curves)),
+        files,
+    )
 
 
 def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) -> None:
     """Curves of all modes under one preload, printed and written as CSV; with harmonic balance of one mode if asked."""
-    from dataclasses import replace
 
     from faying.answer.level_curves import balanced_rows, level_curves, rows
     from faying.backbones.backbone import backbones
-    from faying.errors import InputError
-    from faying.files import new_folder
     from faying.output import table
     from faying.style import save
 
@@ -110,23 +100,20 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
         curves = level_curves(study, load=plan.loads[loads[0]], report=report)
         if options["mode"] is not None:
             (curve,) = backbones(study, choice, loads=loads, report=report)
-        files = [str(curves.to_csv(out))]
+        files = [curves.to_csv(out)]
     if options["plot"]:
-        files.append(str(save(curves.plot()[0].figure, options["plot"])))
-    if options["as_json"]:
-        balanced = {} if curve is None else {"curves": [curve.to_dict()]}
-        click.echo(json_text(curves.to_dict() | balanced | {"files": files}))
-        return
-    click.echo(folded(f"{curves.summary()[0]}: frequency [Hz], damping [%]\n\n{table.text(rows(curves))}"))
+        files.append(save(curves.plot()[0].figure, options["plot"]))
+    tree = curves.to_dict()
+    shown = folded(f"{curves.summary()[0]}: frequency [Hz], damping [%]\n\n{table.text(rows(curves))}")
     if curve is not None:
-        click.echo(f"\nmode {curve.mode}, harmonics 0 to {curve.harmonics}\n{table.text(balanced_rows(curves, curve))}")
-    click.echo(f"\nwritten to {', '.join(files)}")
+        tree["curves"] = [curve.to_dict()]
+        shown += f"\n\nmode {curve.mode}, harmonics 0 to {curve.harmonics}\n{table.text(balanced_rows(curves, curve))}"
+    show(options["as_json"], lambda: tree, lambda: shown, files)
 
 
 def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     """The choice of the study with the options in place of it, and the indices of its loads."""
     from faying.backbones.choice import chosen
-    from faying.errors import InputError
     from faying.joint.preload_case import preload_index
     from faying.study.keys.backbone import accelerations, laws
 
@@ -159,7 +146,6 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
 
 def plain_number(text: str, name: str) -> float:
     """Turn the text of a plain number into one; InputError otherwise."""
-    from faying.errors import InputError
 
     try:
         return float(text)
@@ -169,8 +155,6 @@ def plain_number(text: str, name: str) -> float:
 
 def place(text: str) -> tuple[float, float, float]:
     """Turn "10,0,5 mm" into a point [m]; InputError that shows the form otherwise."""
-    from faying import units
-    from faying.errors import InputError
 
     numbers, _, unit = text.strip().rpartition(" ")
     parts = [part.strip() for part in numbers.split(",")]

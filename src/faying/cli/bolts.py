@@ -5,13 +5,15 @@ from pathlib import Path
 
 import click
 
+from faying.cli.options import PATH
 from faying.cli.progress import Form, Shown, progress_options
+from faying.files import write_text
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.argument("study", type=click.Path(path_type=Path))
+@click.command()
+@click.argument("study", type=PATH)
 @click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
-@click.option("--html", "page", type=click.Path(path_type=Path), help="Write the sheets as a page, with all formulas.")
+@click.option("--html", "page", type=PATH, help="Write the sheets as a page, with all formulas.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 @progress_options
 def command(study: Path, preload: str | None, page: Path | None, as_json: bool, progress: Form | None) -> None:
@@ -20,7 +22,6 @@ def command(study: Path, preload: str | None, page: Path | None, as_json: bool, 
     [[bolt_sheet]] gives working loads, friction and the way of tightening.
     """
     from faying.answer.bolt_sheet import bolt_sheet
-    from faying.files import write_text
     from faying.output import bolt_sheet as shown
 
     with Shown("bolts", progress) as report:

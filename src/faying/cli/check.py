@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from faying.cli.options import PATH
 from faying.output.terminal import folded
 from faying.text import json_text
 
@@ -14,7 +15,7 @@ COLUMNS = 80
 
 
 @click.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with the key and the line of each finding.")
 def command(study: Path, as_json: bool) -> int:
     """Check STUDY without solving: keys, names, contacts, bolts, reach of the laws, mesh, unknowns, memory, time."""

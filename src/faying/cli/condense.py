@@ -5,8 +5,11 @@ from typing import Any
 
 import click
 
+from faying import units
+from faying.cli.options import PATH
 from faying.cli.progress import Form, Shown, progress_options
 from faying.decks.programs import CONDENSED
+from faying.errors import InputError
 from faying.text import json_text
 from faying.units import load_text
 
@@ -15,8 +18,8 @@ WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
 NUMBER = click.IntRange(1, 99_999_999)  # eight digits, the field of a bulk data card
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.argument("study", type=click.Path(path_type=Path))
+@click.command()
+@click.argument("study", type=PATH)
 @click.option("--joint", metavar="NAME", help="Joint of the study; the only one where left out.")
 @click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
 @click.option("--point-a", metavar="POINT", help='Point of the first face, "0 mm; 10 mm; 5 mm" (default: its centre).')
@@ -27,7 +30,7 @@ NUMBER = click.IntRange(1, 99_999_999)  # eight digits, the field of a bulk data
 @click.option("--node-a", type=NUMBER, default=900001, show_default=True, help="Number of the first point's node.")
 @click.option("--node-b", type=NUMBER, default=900002, show_default=True, help="Number of the second point's node.")
 @click.option("--element", type=NUMBER, default=900001, show_default=True, help="Number of the element and property.")
-@click.option("--out", type=click.Path(path_type=Path), help="Folder of the deck (default: joint/ next to the study).")
+@click.option("--out", type=PATH, help="Folder of the deck (default: joint/ next to the study).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 @progress_options
 def command(
@@ -48,7 +51,6 @@ def command(
 ) -> None:
     """Condense a joint of STUDY to a 6 x 6 stiffness between two points, with the error of that."""
     from faying.decks.write import write_condensed
-    from faying.errors import InputError
     from faying.export.condense import condense
     from faying.output.table import text
     from faying.study import Study
@@ -58,13 +60,7 @@ def command(
     plan = Study.read(study)
     points = (_point(point_a, "--point-a"), _point(point_b, "--point-b"))
     with Shown("condense", progress) as report:
-        found = condense(
-            plan,
-            joint=joint,
-            preload=preload,
-            points=points,
-            report=report,
-        )
+        found = condense(plan, joint=joint, preload=preload, points=points, report=report)
     files: list[Path] = []
     if solver is not None:
         deck = found.deck(unit=unit or "", force_unit=force_unit, nodes=(node_a, node_b), element=element)
@@ -98,9 +94,6 @@ def _matrix(values: Any) -> list[str]:
 
 def _point(given: str | None, name: str) -> Any:
     import numpy as np
-
-    from faying import units
-    from faying.errors import InputError
 
     if given is None:
         return None

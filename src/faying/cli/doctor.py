@@ -7,10 +7,11 @@ from typing import Any
 
 import click
 
+from faying.errors import InputError
 from faying.text import json_text
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def command(as_json: bool) -> None:
     """Say what works here: versions, solver, memory, STEP files, instruments, browser, cache.
@@ -66,7 +67,6 @@ def _memory() -> dict[str, str]:
 
 
 def _step() -> dict[str, str]:
-    from faying.errors import InputError
     from faying.geometry.cad import kernel
 
     try:

@@ -6,6 +6,8 @@ from typing import Any
 
 import click
 
+from faying.cli.options import PATH
+from faying.errors import InputError
 from faying.output.terminal import WIDTH, folded
 from faying.output.terminal import text as aligned
 from faying.text import json_text
@@ -14,13 +16,12 @@ WIDE = 18  # letters of a face's name in the table
 
 
 @click.command()
-@click.argument("geometry", type=click.Path(path_type=Path))
+@click.argument("geometry", type=PATH)
 @click.option("--part", help="Only the faces of this part.")
 @click.option("--unit", help='Unit of a mesh file\'s coordinates, such as "mm".')
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 def command(geometry: Path, part: str | None, unit: str | None, as_json: bool) -> None:
     """List the faces of GEOMETRY, a STEP or mesh file: number, kind, area, normal, centre, and where parts touch."""
-    from faying.errors import InputError
 
     facts = read(geometry, unit)
     if part is not None and part not in facts.by_part:
@@ -33,7 +34,6 @@ def command(geometry: Path, part: str | None, unit: str | None, as_json: bool) -
 
 def read(geometry: Path, unit: str | None) -> Any:
     """The facts of a STEP file, or of the named faces of a mesh file."""
-    from faying.errors import InputError
     from faying.geometry.cad import STEP
 
     if geometry.suffix.lower() in STEP:

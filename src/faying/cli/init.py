@@ -4,9 +4,11 @@ from pathlib import Path
 
 import click
 
+from faying.cli.options import PATH
+
 
 @click.command()
-@click.argument("study", type=click.Path(path_type=Path), default="study.toml")
+@click.argument("study", type=PATH, default="study.toml")
 @click.option("--force", is_flag=True, help="Replace files that exist with other content.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was written as JSON.")
 def command(study: Path, force: bool, as_json: bool) -> None:

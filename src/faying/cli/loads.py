@@ -4,16 +4,17 @@ from pathlib import Path
 
 import click
 
+from faying.cli.options import FILE, PATH
 from faying.cli.progress import Form, Shown, progress_options
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.argument("study", type=click.Path(path_type=Path))
+@click.command()
+@click.argument("study", type=PATH)
 @click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
 @click.option("--no-modes", is_flag=True, help="Leave out the modes about each loaded state.")
 @click.option("--intervals", is_flag=True, help="Find 90 % intervals over the scatter of preload and friction.")
-@click.option("--out", type=click.Path(path_type=Path), help="Write all numbers and pressure maps as NetCDF (.nc).")
-@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the pressure (svg, png, pdf).")
+@click.option("--out", type=PATH, help="Write all numbers and pressure maps as NetCDF (.nc).")
+@click.option("--plot", type=FILE, help="Draw the pressure (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 @progress_options
 def command(

@@ -5,17 +5,16 @@ from typing import Any
 
 import click
 
+from faying import units
+from faying.cli.options import PATH
+from faying.errors import InputError
 from faying.text import json_text
 
 
 @click.command()
-@click.argument("study", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "--stiffness",
-    type=click.Path(path_type=Path),
-    help="In place of a study: .mtx, .npz, .sti of CalculiX, or DMIG of Nastran.",
-)
-@click.option("--mass", type=click.Path(path_type=Path), help="Mass matrix, where the file of --stiffness has none.")
+@click.argument("study", required=False, type=PATH)
+@click.option("--stiffness", type=PATH, help="In place of a study: .mtx, .npz, .sti of CalculiX, or DMIG of Nastran.")
+@click.option("--mass", type=PATH, help="Mass matrix, where the file of --stiffness has none.")
 @click.option("--stiffness-unit", default="N/m", show_default=True, help="Unit of the stiffness entries.")
 @click.option("--mass-unit", default="kg", show_default=True, help="Unit of the mass entries.")
 @click.option(
@@ -24,7 +23,7 @@ from faying.text import json_text
 @click.option("--shift", metavar="FREQUENCY", help='Frequency of the spectral shift, for example "100 Hz" [found].')
 @click.option(
     "--points",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="With --stiffness and --mpi: x y z [m] of each node, in the order of the matrices, three unknowns a node.",
 )
 @click.option(
@@ -35,7 +34,7 @@ from faying.text import json_text
 )
 @click.option(
     "--export",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="DIR",
     help="Write stiffness.npz, mass.npz, dofs.txt and points.txt and solve nothing.",
 )
@@ -54,8 +53,6 @@ def command(
     as_json: bool,
 ) -> None:
     """Real modes of STUDY at its first preload, or of assembled matrices."""
-    from faying import units
-    from faying.errors import InputError
     from faying.export.assembled import Assembled
     from faying.study import Study
 

@@ -6,19 +6,18 @@ from typing import Any
 
 import click
 
+from faying import units
+from faying.cli.options import PATH
+from faying.errors import InputError
 from faying.text import json_text
 
 
 @click.command()
-@click.argument("step", metavar="FILE", type=click.Path(path_type=Path))
+@click.argument("step", metavar="FILE", type=PATH)
 @click.option("--unit", help='Unit of a mesh file\'s coordinates, such as "mm".')
-@click.option("--scan", type=click.Path(path_type=Path), help="Scan of one face (default: a synthetic milled one).")
-@click.option("--out", type=click.Path(path_type=Path), default="study.toml", show_default=True, help="The study file.")
-@click.option(
-    "--yes",
-    is_flag=True,
-    help="Ask nothing; assume steel, class 8.8, 70 % of the proof load, and print it.",
-)
+@click.option("--scan", type=PATH, help="Scan of one face (default: a synthetic milled one).")
+@click.option("--out", type=PATH, default="study.toml", show_default=True, help="The study file.")
+@click.option("--yes", is_flag=True, help="Ask nothing; assume steel, class 8.8, 70 % of the proof load, and print it.")
 @click.option("--force", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found and written as JSON; asks nothing.")
 def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:
@@ -26,7 +25,6 @@ def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: boo
 
     FILE is a STEP file, or a mesh of another program whose faces have names; its pretension sections become bolts.
     """
-    from faying.errors import InputError
     from faying.setup import new
 
     silent = yes or as_json
@@ -43,7 +41,6 @@ def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: boo
 
 def asked(proposal: Any, scan: Path | None) -> Any:
     """Ask what the geometry does not tell; each question has its default."""
-    from faying import units
     from faying.materials import CATALOGUE
     from faying.setup import new
     from faying.setup.bolt_names import grouped

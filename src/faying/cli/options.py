@@ -1,6 +1,35 @@
 """What several commands share."""
 
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
+
+import click
+
+from faying import units
+from faying.errors import InputError
+from faying.text import json_text
+
+PATH = click.Path(path_type=Path)
+FILE = click.Path(dir_okay=False, path_type=Path)
+
+
+def show(
+    as_json: bool,
+    tree: Callable[[], dict[str, Any]],
+    text: Callable[[], str],
+    files: Sequence[Path],
+    folder: Path | None = None,
+) -> None:
+    """Print what a command found, as JSON or as text, and the files that it wrote: all of them in `folder`, or each."""
+    if as_json:
+        click.echo(json_text(tree() | {"files": [str(file) for file in files]}))
+        return
+    click.echo(text())
+    if files and folder is not None:
+        click.echo(f"\nwritten to {folder}: {', '.join(file.name for file in files)}")
+    elif files:
+        click.echo(f"\nwritten to {', '.join(map(str, files))}")
 
 
 def quantity(value: Any, unit: str) -> dict[str, Any]:
@@ -10,8 +39,6 @@ def quantity(value: Any, unit: str) -> dict[str, Any]:
 
 def frequency_band(text: str) -> tuple[float, float]:
     """Turn the text of --band into two frequencies [Hz]; InputError that shows the form otherwise."""
-    from faying import units
-    from faying.errors import InputError
 
     parts = text.split(":")
     if len(parts) != 2:

@@ -7,16 +7,16 @@ from typing import Any
 
 import click
 
+from faying.cli.options import PATH, show
 from faying.cli.progress import Form, Shown, progress_options
-from faying.text import json_text
+from faying.errors import InputError
+from faying.files import together
 
 
 @click.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder for the results (default: results/ of study.toml, results/NAME/ of NAME.toml).",
+    "--out", type=PATH, help="Folder for the results (default: results/ of study.toml, results/NAME/ of NAME.toml)."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--no-files", is_flag=True, help="Write no files, only print.")
@@ -52,9 +52,7 @@ def command(
 ) -> None:
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
     from faying.answer.run import run, stages
-    from faying.errors import InputError
     from faying.export import universal
-    from faying.files import together
     from faying.numerics.solve import MPI
     from faying.output import report
     from faying.study import Study
@@ -77,12 +75,7 @@ def command(
             files = report.write(result, hidden)
             files += universal.write(result, hidden) if uff else []
             files = [folder / file.name for file in files]
-    if as_json:
-        click.echo(json_text(result.to_dict() | {"files": [str(f) for f in files]}))
-        return
-    click.echo(text(result))
-    if files:
-        click.echo(f"\nwritten to {folder}: {', '.join(f.name for f in files)}")
+    show(as_json, result.to_dict, lambda: text(result), files, folder)
 
 
 RESULT = "result.nc"  # is kept where the report does not fit

@@ -4,12 +4,14 @@ from pathlib import Path
 
 import click
 
+from faying.cli.options import FILE, PATH
 from faying.cli.progress import Form, Shown, progress_options
+from faying.files import new_folder
 from faying.text import json_text
 
 
 @click.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option(
     "--set",
     "settings",
@@ -19,15 +21,11 @@ from faying.text import json_text
     help="What varies: surface.D=2.2:2.6:40, bolt.preload='1 kN:20 kN:30', surface.G='1e-12 m:1e-10 m:9:log', "
     "law.model=jk,gw. Several give all combinations.",
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="NetCDF file (default: sweep.nc in the folder that run writes to).",
-)
+@click.option("--out", type=PATH, help="NetCDF file (default: sweep.nc in the folder that run writes to).")
 @click.option("--tolerance", type=float, default=4e-6, show_default=True, help="Relative error of a frequency.")
 @click.option("--jobs", type=click.IntRange(1, 1024), default=1, show_default=True, help="Processes on this machine.")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
-@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw one axis or two (svg, png, pdf).")
+@click.option("--plot", type=FILE, help="Draw one axis or two (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")
 @progress_options
 def command(
@@ -45,7 +43,6 @@ def command(
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
-    from faying.files import new_folder
     from faying.output.figures import sweep as drawing
     from faying.study import Study
     from faying.style import save

@@ -5,12 +5,16 @@ from pathlib import Path
 
 import click
 
+from faying.cli.options import FILE, PATH
+from faying.errors import InputError
+from faying.files import write_text
+
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="The page (default: next to FILE).")
+@click.argument("file", type=PATH)
+@click.option("--out", type=FILE, help="The page (default: next to FILE).")
 @click.option("--unit", help='Unit of a mesh file, such as "mm"; no mesh file says.')
-@click.option("--vtu", type=click.Path(dir_okay=False, path_type=Path), help="Write a result for ParaView: NAME.pvd.")
+@click.option("--vtu", type=FILE, help="Write a result for ParaView: NAME.pvd.")
 @click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.")
 def command(file: Path, out: Path | None, unit: str | None, vtu: Path | None, show: bool) -> None:
     """Show FILE: a study (.toml) before it is run, a result (.nc), a mesh, or a STEP file.
@@ -22,7 +26,6 @@ def command(file: Path, out: Path | None, unit: str | None, vtu: Path | None, sh
     """
     import webbrowser
 
-    from faying.files import write_text
     from faying.output.scene import of_file, page
 
     if vtu is not None:
@@ -39,7 +42,6 @@ def command(file: Path, out: Path | None, unit: str | None, vtu: Path | None, sh
 
 def _for_paraview(file: Path, vtu: Path, *, page_too: bool) -> None:
     """Write a result for ParaView."""
-    from faying.errors import InputError
     from faying.result import Result
 
     if file.suffix.lower() != ".nc":

@@ -4,24 +4,25 @@ from pathlib import Path
 
 import click
 
+from faying import units
 from faying.cli.measured.two_runs import show_two_runs
+from faying.cli.options import PATH, show
+from faying.errors import InputError
+from faying.files import together
 from faying.output.terminal import folded
-from faying.text import json_text
 from faying.units import load_text
 
 FOR_BOTH = ("result", "other", "load", "out", "as_json")
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.argument("result", type=click.Path(path_type=Path))
-@click.argument("other", type=click.Path(path_type=Path))
+@click.command()
+@click.argument("result", type=PATH)
+@click.argument("other", type=PATH)
 @click.option("--load", help='Preload to compare at, for example "8 kN". Default: the greatest; of two results, each.')
-@click.option(
-    "--points", type=click.Path(path_type=Path), help="CSV table of the test's positions: point,x [mm],y [mm],z [mm]."
-)
+@click.option("--points", type=PATH, help="CSV table of the test's positions: point,x [mm],y [mm],z [mm].")
 @click.option(
     "--frame",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="The same table for three points or more, with their places in the model; turns and shifts the test.",
 )
 @click.option("--length-unit", help='Unit of the positions in TEST, where it states none, for example "mm".')
@@ -48,7 +49,7 @@ FOR_BOTH = ("result", "other", "load", "out", "as_json")
     show_default=True,
     help="Difference of frequency that a pair may have, relative to the test.",
 )
-@click.option("--out", type=click.Path(path_type=Path), help="Folder for the table, the figures and the report.")
+@click.option("--out", type=PATH, help="Folder for the table, the figures and the report.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 def command(
     result: Path,
@@ -74,8 +75,6 @@ def command(
         _check_no_test(click.get_current_context())
         show_two_runs((result, other), load, out, as_json=as_json)
         return
-    from faying import units
-    from faying.files import together
     from faying.measured.compare import compare_modes
     from faying.measured.tested import read_test
     from faying.output import report_measured, table
@@ -103,22 +102,15 @@ def command(
             files = [out / file.name for file in report_measured.write(comparison, hidden)]
     for line in tested.notes:
         click.echo(f"note: {line}", err=True)
-    if as_json:
-        click.echo(json_text(comparison.to_dict() | {"files": [str(f) for f in files]}))
-        return
     nodes = len(comparison.point_map.nodes)
     head = f"{model.title} at {load_text(model.load)}; {nodes} points of the test found a node"
-    notes = (f"note: {line}" for line in comparison.notes)
-    click.echo(folded("\n".join([head, "", table.text(comparison.rows()), *notes])))
-    if files:
-        click.echo(f"\nwritten to {out}: {', '.join(f.name for f in files)}")
+    lines = [head, "", table.text(comparison.rows()), *(f"note: {line}" for line in comparison.notes)]
+    show(as_json, comparison.to_dict, lambda: folded("\n".join(lines)), files, out)
 
 
 def _check_no_test(context: click.Context) -> None:
     """Raise InputError for an option that two results have no use for."""
     from click.core import ParameterSource
-
-    from faying.errors import InputError
 
     given = [
         parameter.opts[0]

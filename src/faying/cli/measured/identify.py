@@ -5,13 +5,14 @@ from pathlib import Path
 
 import click
 
+from faying.cli.options import FILE, PATH, show
 from faying.cli.progress import Form, Shown, progress_options
+from faying.files import new_folder, write_text
 from faying.output.terminal import folded
-from faying.text import json_text
 
 
 @click.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option(
     "--leave-out", multiple=True, metavar="PRELOAD", help='Preload to predict and not to use, for example "12 kN".'
 )
@@ -23,13 +24,9 @@ from faying.text import json_text
 )
 @click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="NetCDF file (default: identification.nc in the folder that run writes to).",
-)
-@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw priors, posteriors, frequencies.")
-@click.option("--html", type=click.Path(dir_okay=False, path_type=Path), help="Write table and figure as one page.")
+@click.option("--out", type=PATH, help="NetCDF file (default: identification.nc in the folder that run writes to).")
+@click.option("--plot", type=FILE, help="Draw priors, posteriors, frequencies.")
+@click.option("--html", type=FILE, help="Write table and figure as one page.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
 @progress_options
 def command(
@@ -49,7 +46,6 @@ def command(
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
-    from faying.files import new_folder, write_text
     from faying.identify import identification_figure as drawing
     from faying.identify.of_study import identify
     from faying.output.report_predicted import identified
@@ -72,10 +68,7 @@ def command(
             report=report,
         )
     files = [out] + ([save(drawing.figure(found), plot)] if plot else [])
+    source = plan.test.source if plan.test else ""
     if html:
-        files.append(write_text(html, identified(found, plan.title, plan.test.source if plan.test else "")))
-    if as_json:
-        click.echo(json_text(found.to_dict() | {"files": [str(file) for file in files]}))
-        return
-    click.echo(folded(f"{plan.title}: {plan.test.source if plan.test else ''}\n\n{found.table()}"))
-    click.echo(f"\nwritten to {', '.join(map(str, files))}")
+        files.append(write_text(html, identified(found, plan.title, source)))
+    show(as_json, found.to_dict, lambda: folded(f"{plan.title}: {source}\n\n{found.table()}"), files)

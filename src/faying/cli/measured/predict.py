@@ -5,34 +5,32 @@ from pathlib import Path
 
 import click
 
+from faying.cli.options import FILE, PATH, show
 from faying.cli.progress import Form, Shown, progress_options
-from faying.text import json_text
+from faying.errors import InputError
+from faying.files import new_folder, write_text
 
 
 @click.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option(
     "--samples", type=click.IntRange(8, 1_000_000), default=1024, show_default=True, help="Points of Sobol's sequence."
 )
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Seed of the samples.")
 @click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="NetCDF file (default: prediction.nc in the folder that run writes to).",
-)
-@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the intervals (svg, png, pdf).")
-@click.option("--tornado", type=click.Path(dir_okay=False, path_type=Path), help="Draw the shares of the variance.")
-@click.option("--scatter", type=click.Path(dir_okay=False, path_type=Path), help="Draw inputs against frequencies.")
+@click.option("--out", type=PATH, help="NetCDF file (default: prediction.nc in the folder that run writes to).")
+@click.option("--plot", type=FILE, help="Draw the intervals (svg, png, pdf).")
+@click.option("--tornado", type=FILE, help="Draw the shares of the variance.")
+@click.option("--scatter", type=FILE, help="Draw inputs against frequencies.")
 @click.option(
     "--backbones",
     type=click.IntRange(8, 1_000_000),
     metavar="N",
     help="Follow the mode of [backbone] to large amplitudes in the first N samples.",
 )
-@click.option("--bands", type=click.Path(dir_okay=False, path_type=Path), help="Draw the bands of the backbones.")
-@click.option("--html", type=click.Path(dir_okay=False, path_type=Path), help="Write tables and figures as one page.")
+@click.option("--bands", type=FILE, help="Draw the bands of the backbones.")
+@click.option("--html", type=FILE, help="Write tables and figures as one page.")
 @click.option("--json", "as_json", is_flag=True, help="Print the quantiles and shares as JSON.")
 @progress_options
 def command(
@@ -57,8 +55,6 @@ def command(
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
-    from faying.errors import InputError
-    from faying.files import new_folder, write_text
     from faying.identify import prediction_figure as drawing
     from faying.identify.predict import check, predict
     from faying.identify.sampling.follow import choice_of
@@ -97,8 +93,4 @@ def command(
     files = [out, *(save(draw(found), file) for draw, file in figures.items() if file)]
     if html:
         files.append(write_text(html, predicted(found)))
-    if as_json:
-        click.echo(json_text(found.to_dict() | {"files": [str(file) for file in files]}))
-        return
-    click.echo(text(found))
-    click.echo(f"\nwritten to {', '.join(map(str, files))}")
+    show(as_json, found.to_dict, lambda: text(found), files)

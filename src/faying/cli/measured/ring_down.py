@@ -1,16 +1,19 @@
 """`faying ring-down RECORD --band LOW:HIGH`: the measured backbone of a mode from a free decay."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 
-from faying.cli.options import frequency_band, quantity
+from faying import units
+from faying.cli.options import FILE, PATH, frequency_band, quantity
+from faying.errors import InputError
 from faying.text import json_text
 
 
 @click.command()
-@click.argument("record", type=click.Path(path_type=Path))
+@click.argument("record", type=PATH)
 @click.option(
     "--band", required=True, metavar="LOW:HIGH", help='Band with this mode alone, for example "150 Hz:180 Hz".'
 )
@@ -22,8 +25,8 @@ from faying.text import json_text
 @click.option(
     "--cycles", type=click.IntRange(3, 10_000), default=20, show_default=True, help="Periods that give one point."
 )
-@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="CSV file for faying backbone --measured.")
-@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Draw the points (svg, png, pdf).")
+@click.option("--out", type=FILE, help="CSV file for faying backbone --measured.")
+@click.option("--plot", type=FILE, help="Draw the points (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 def command(record: Path, **options: Any) -> None:
     """Frequency and damping of one mode against its amplitude, from the free decay in RECORD.
@@ -43,19 +46,16 @@ def command(record: Path, **options: Any) -> None:
     if options["plot"]:
         save(drawing.measured(found), options["plot"])
     if options["as_json"]:
-        units = {"acceleration": "m/s2", "frequency": "Hz", "damping": "1", "time": "s"}
-        units |= {"frequency_error": "Hz", "damping_error": "1"}
-        click.echo(json_text({n: quantity(getattr(found, n).tolist(), u) for n, u in units.items()}))
+        known = {"acceleration": "m/s2", "frequency": "Hz", "damping": "1", "time": "s"}
+        known |= {"frequency_error": "Hz", "damping_error": "1"}
+        click.echo(json_text({n: quantity(getattr(found, n).tolist(), u) for n, u in known.items()}))
         return
     click.echo(text(measured_backbone(found)))
 
 
 def decay(record: Path, options: dict[str, Any]) -> Any:
     """The measured points of a record, or of the FRF of a hit."""
-    from dataclasses import replace
 
-    from faying import units
-    from faying.errors import InputError
     from faying.measured.ring_down import read_record, ring_down, ring_down_of_frf
     from faying.measured.uff import read_uff
 

@@ -1,18 +1,21 @@
 """`faying test FILE...`: modes of a hammer test out of its FRFs."""
 
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import click
 
-from faying.cli.options import frequency_band
+from faying import units
+from faying.cli.options import FILE, PATH, frequency_band
+from faying.errors import InputError
 from faying.text import json_text
 
 TEXT = (".txt", ".csv", ".dat", ".asc")
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.command()
+@click.argument("files", nargs=-1, required=True, type=PATH)
 @click.option(
     "--quantity",
     type=click.Choice(["receptance", "mobility", "accelerance"]),
@@ -27,9 +30,7 @@ TEXT = (".txt", ".csv", ".dat", ".asc")
     "--direction", type=click.Choice(["x", "y", "z"]), help="Direction of the test, where the file states none."
 )
 @click.option("--length-unit", help='Unit of the positions, where the file states none, for example "mm".')
-@click.option(
-    "--points", type=click.Path(path_type=Path), help="CSV table of the positions: point,x [mm],y [mm],z [mm]."
-)
+@click.option("--points", type=PATH, help="CSV table of the positions: point,x [mm],y [mm],z [mm].")
 @click.option("--band", metavar="LOW:HIGH", help='Lines to use, for example "20 Hz:800 Hz". Default: all above 0 Hz.')
 @click.option(
     "--order", type=click.IntRange(2, 200), help="Highest order of the poles. Default: 80, or an eighth of the lines."
@@ -43,9 +44,7 @@ TEXT = (".txt", ".csv", ".dat", ".asc")
 @click.option(
     "--plot", type=click.Path(dir_okay=False), help="Write the stabilisation diagram and a fitted FRF (png, pdf, svg)."
 )
-@click.option(
-    "--out", type=click.Path(dir_okay=False, path_type=Path), help="Write modes and FRFs as a universal file."
-)
+@click.option("--out", type=FILE, help="Write modes and FRFs as a universal file.")
 def command(
     files: tuple[Path, ...],
     quantity: str | None,
@@ -90,10 +89,7 @@ def read_frf(
     points: Path | None,
 ) -> Any:
     """The FRFs of universal or text files, with the user's words where the files say nothing."""
-    from dataclasses import replace
 
-    from faying import units
-    from faying.errors import InputError
     from faying.measured.mapping import read_points
     from faying.measured.text import read_frf_text
     from faying.measured.uff import read_uff
@@ -144,7 +140,6 @@ def table(found: Any) -> str:
 
 def document(found: Any) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON; SI."""
-    from dataclasses import asdict
 
     modes = found.modes
     return {

@@ -6,7 +6,9 @@ from typing import Any
 import click
 
 from faying.cli.progress import Shown
+from faying.errors import FayingError, InputError, ReadError
 from faying.text import json_text
+from faying.units import parse, show
 
 COLUMNS = {
     "R": "m",
@@ -24,7 +26,7 @@ COLUMNS = {
 NEEDED = ("R", "h_a")
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command()
 @click.option("--R", "R", metavar="LENGTH", help='Radius of the cap, for example "15 um".')
 @click.option("--h-a", "h_a", metavar="LENGTH", help="Height of the cap; R makes half a sphere.")
 @click.option(
@@ -73,7 +75,6 @@ def command(
     Example: faying asperity --R "15 um" --h-a "100 nm" --displacement "10 nm" --E "100 GPa"
     """
     from faying.asperity_fe.cases import solve_cases, write_netcdf
-    from faying.errors import FayingError, InputError
 
     if table_file:
         cases = [case_of({**options, **row}) for row in rows_of(table_file)]
@@ -104,8 +105,6 @@ def rows_of(file: str) -> list[dict[str, str]]:
     """Rows of the CSV of cases; InputError for columns that are unknown or missing."""
     import csv
 
-    from faying.errors import InputError, ReadError
-
     try:
         with Path(file).open(newline="", encoding="utf-8") as handle:
             reader = csv.DictReader(handle)
@@ -126,9 +125,7 @@ def rows_of(file: str) -> list[dict[str, str]]:
 def case_of(options: dict[str, Any]) -> Any:
     """Build one case from texts with units."""
     from faying.asperity_fe.drive import AsperityCase
-    from faying.errors import InputError
     from faying.materials import CATALOGUE, RIGID, Material
-    from faying.units import parse
 
     def number(key: str, unit: str, default: float | None = None) -> float:
         value = options.get(key)
@@ -183,7 +180,6 @@ def case_of(options: dict[str, Any]) -> Any:
 
 def history_of(given: Any, name: str, unit: str) -> tuple[float, ...]:
     """Turning points of a history from texts with units; 0 needs none. A cell of a table separates them by ";"."""
-    from faying.units import parse
 
     words = given.split(";") if isinstance(given, str) else given
     return tuple(0.0 if str(v).strip() == "0" else parse(v, unit, name=name) for v in words)
@@ -191,7 +187,6 @@ def history_of(given: Any, name: str, unit: str) -> tuple[float, ...]:
 
 def described(case: Any, result: Any) -> dict[str, Any]:
     """Inputs and outcome of one case, SI units."""
-    from faying.errors import FayingError
 
     out: dict[str, Any] = {
         "R": case.R,
@@ -217,7 +212,6 @@ def described(case: Any, result: Any) -> dict[str, Any]:
 
 def table(document: list[dict[str, Any]]) -> str:
     """Format the outcome for the terminal: the greatest load and, where there is one, the residual displacement."""
-    from faying.units import show
 
     columns = {"R": 10, "h_a": 10, "displacement": 14, "force": 12, "area": 14, "bounds": 26, "pressure": 12}
     lines = ["".join(f"{name:>{width}}" for name, width in (columns | {"residual": 12}).items())]

@@ -5,21 +5,23 @@ from typing import Any
 
 import click
 
+from faying.cli.options import FILE
+from faying.errors import ReadError
 from faying.text import json_text
+from faying.units import show
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
+@click.command()
+@click.argument("file", type=FILE)
 @click.option("--xy-unit", help='Unit of x and y where the file states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights or gaps where the file states none, for example "um".')
 @click.option("--gap", "is_gap", is_flag=True, help="The values are gaps between two faces, not heights of one.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of text.")
-@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path), help="Write the map (png, pdf, svg).")
+@click.option("--plot", type=FILE, help="Write the map (png, pdf, svg).")
 def command(
     file: Path, xy_unit: str | None, z_unit: str | None, is_gap: bool, as_json: bool, plot: Path | None
 ) -> None:
     """Flatness, crowns and twist of the form in FILE: a list of points x, y, z (csv, txt, dat, xyz, asc) or a scan."""
-    from faying.errors import ReadError
     from faying.form import figure as drawing
     from faying.form.fit import fit_form
     from faying.form.gap_map import read_heights
@@ -42,7 +44,6 @@ def command(
 
 def text(name: str, fit: Any) -> str:
     """The numbers, and the table of a study that stands for them."""
-    from faying.units import show
 
     sides = " x ".join(show(side, "m") for side in fit.lengths)
     lines = [

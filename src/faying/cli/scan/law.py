@@ -1,13 +1,18 @@
 """`faying law`: the curves of one contact law, or of several on one scan, as tables, JSON, CSV and figures."""
 
+from dataclasses import asdict, replace
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import click
 
-from faying.cli.options import quantity
+from faying.cli.options import PATH, quantity
+from faying.errors import InputError
+from faying.files import write_text
 from faying.output.terminal import folded
 from faying.text import json_text
+from faying.units import lengths, parse, show
 
 # what the table shows: heading and factor from SI
 SHOWN = {
@@ -28,7 +33,7 @@ PRESSURES = "0.1 MPa:50 MPa"
 OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws take from --D, --G and --scan-area
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command()
 @click.option("--model", help="The law; `faying models` lists them. Default: auto on a scan, JK on D and G.")
 @click.option("--D", "D", help="Fractal dimension of both faces together, 2 to 3.")
 @click.option("--G", "G", metavar="LENGTH", help='Fractal roughness of both faces together, for example "1.53e-10 m".')
@@ -62,7 +67,7 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
     metavar="FROM:TO[:POINTS]",
     help="Nominal pressures, spaced logarithmically; or one pressure. Default: 0.1 to 50 MPa, as far as the law goes.",
 )
-@click.option("--scan", type=click.Path(path_type=Path), help="A scan: D, G, moments and area come from it.")
+@click.option("--scan", type=PATH, help="A scan: D, G, moments and area come from it.")
 @click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
 @click.option("--size", metavar="LENGTHS", help='Size of a scan whose file states none, for example "4 mm x 3 mm".')
@@ -105,8 +110,6 @@ def command(
     from faying.cli.scan import law_table
     from faying.contact.auto import pick
     from faying.contact.build import find
-    from faying.errors import InputError
-    from faying.files import write_text
 
     on_scan = options["scan"] is not None
     if not on_scan and (stability or options["counter"] is not None):
@@ -159,7 +162,6 @@ def command(
 def conducted(law: Any, response: Any, pair: Any) -> Any:
     """Conductance of heat [W/(m2 K)] that goes with k_n; InputError without k_n or without the conductivities."""
     from faying.contact.conductance import heat_conductance
-    from faying.errors import InputError
 
     if response.k_n is None:
         raise InputError(f"--conductance follows from k_n, and {law.name} gives none; name another --model")
@@ -168,8 +170,6 @@ def conducted(law: Any, response: Any, pair: Any) -> Any:
 
 def heading(choice: Any, mates: Any) -> list[str]:
     """Both faces, what the scan says of D and G, and why the law was taken."""
-    from dataclasses import asdict
-    from textwrap import wrap
 
     from faying.output import table
 
@@ -214,9 +214,7 @@ def mates_of(options: dict[str, Any], kind: Any, pair: Any) -> Any:
 def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> Any:
     """Read, level and fit the scan of --scan, as a study does; numbers: D, G and area in place of its own."""
     from faying.contact.two_faces import COUNTERS
-    from faying.errors import InputError
     from faying.study.keys.surface import SurfaceChoice
-    from faying.units import lengths
 
     names = ("scan", "xy_unit", "z_unit", "method")
     sizes: dict[str, Any] = {
@@ -234,11 +232,8 @@ def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> Any:
 
 def pair_of(options: dict[str, Any]) -> Any:
     """Build the pair from --material, --E ... and --against."""
-    from dataclasses import replace
 
-    from faying.errors import InputError
     from faying.materials import ContactPair, Material, material_of
-    from faying.units import parse
 
     stresses = ("E", "hardness", "yield_strength")
     given: dict[str, Any] = {
@@ -266,7 +261,6 @@ def given_of(kind: Any, options: dict[str, Any], settings: tuple[str, ...], mate
     Every fault is in one message.
     """
     from faying.contact.build import check_entries
-    from faying.errors import InputError
 
     own = ("D", "G", "scan_area") if mates is None else ()
     texts = {name: str(options[name]) for name in own if options[name] is not None}
@@ -292,9 +286,6 @@ def given_of(kind: Any, options: dict[str, Any], settings: tuple[str, ...], mate
 def pressures_of(text: str, points: int = 19) -> Any:
     """Read "FROM:TO", "FROM:TO:POINTS" or one pressure [Pa]; InputError otherwise."""
     import numpy as np
-
-    from faying.errors import InputError
-    from faying.units import parse
 
     parts = [part.strip() for part in text.split(":")]
     if len(parts) > 3:
@@ -350,7 +341,6 @@ def document(law: Any, response: Any) -> dict[str, Any]:
 
 def table(law: Any, response: Any, h: Any = None) -> str:
     """Format the response for the terminal; * marks rows outside the validity range, with the reasons below."""
-    from faying.units import show
 
     quantities = response.quantities() | ({} if h is None else {"h": h})
     names = [name for name in SHOWN if name in quantities]

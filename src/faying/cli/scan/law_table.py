@@ -10,9 +10,12 @@ import click
 
 from faying.cli.options import quantity
 from faying.cli.progress import Shown
+from faying.errors import FayingError, InputError
+from faying.files import write_text
 from faying.output import terminal
 from faying.output.terminal import folded
 from faying.text import json_text
+from faying.units import show as unit
 
 SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
 
@@ -31,7 +34,6 @@ class Output:
 def show(mates: Any, names: list[str] | None, pressures: Any, output: Output) -> None:
     """Compare the laws and print, write and draw the outcome."""
     from faying.contact.compare import compare
-    from faying.files import write_text
 
     inputs = mates.faces.rough.inputs
     with watched(mates) as seen:
@@ -64,7 +66,6 @@ def conducted(comparison: Any, pair: Any) -> dict[str, Any]:
 def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
     """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one is solved on the scan."""
     from faying.contact.models.half_space import HalfSpace
-    from faying.errors import InputError
     from faying.halfspace.figure import contact_figure
     from faying.style import save
 
@@ -88,7 +89,6 @@ def stability(mates: Any, names: list[str], given: Any, pressure: float, as_json
     """One row per law: k_n on the whole scan, and the factors by which parts and fewer points move it."""
     from faying.contact.stability import CASES, UNSTABLE
     from faying.contact.stability import stability as stability_of
-    from faying.errors import FayingError
 
     found, without = [], []
     for name in names:
@@ -146,8 +146,6 @@ def table(inputs: Any, comparison: Any, heat: dict[str, Any]) -> str:
     """Format area, k_n and h of every law at a few pressures, and the factor between the laws."""
     import numpy as np
 
-    from faying.units import show as unit
-
     shown = np.unique(np.linspace(0, comparison.pressure.size - 1, min(7, comparison.pressure.size)).astype(int))
     lines = [
         f"D {inputs.D:.4g}, G {unit(inputs.G, 'm')}, rms height {unit(inputs.h_rms, 'm')}, rms gradient "
@@ -189,7 +187,6 @@ def table(inputs: Any, comparison: Any, heat: dict[str, Any]) -> str:
 
 def reasons(response: Any) -> list[str]:
     """Return why a response leaves its validity range, with the pressures from and to; coverage shows as -."""
-    from faying.units import show as unit
 
     lines = []
     for reason, mask in response.reasons.items():

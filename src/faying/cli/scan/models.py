@@ -1,5 +1,6 @@
 """`faying models`: every contact model with its source, inputs and ranges."""
 
+from dataclasses import MISSING, fields
 from typing import Any
 
 import click
@@ -8,7 +9,7 @@ from faying.output.terminal import folded
 from faying.text import json_text
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command()
 @click.argument("name", required=False)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def command(name: str | None, as_json: bool) -> None:
@@ -44,7 +45,6 @@ def mark(parameter: dict[str, Any]) -> str:
 
 def describe(cls: Any) -> dict[str, Any]:
     """Return what a law declares."""
-    from dataclasses import MISSING, fields
 
     from faying.contact.inputs import OF_SCAN
 

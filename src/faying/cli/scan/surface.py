@@ -1,5 +1,6 @@
 """`faying surface FILE`: roughness, D and G of a scan, on the terminal, as JSON, and as a figure."""
 
+from dataclasses import asdict, replace
 from typing import Any
 
 import click
@@ -7,9 +8,10 @@ import click
 from faying.output.terminal import WIDTH, folded
 from faying.surface.estimators.table import METHODS
 from faying.text import json_text
+from faying.units import lengths, show
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command()
 @click.argument("file", type=click.Path())
 @click.option("--xy-unit", help='Unit of x and y where the file states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights where the file states none, for example "um".')
@@ -43,7 +45,6 @@ def command(
     from faying.surface.form import prepared
     from faying.surface.fractal import FractalFit, fit_all, fit_fractal
     from faying.surface.roughness import roughness
-    from faying.units import lengths
 
     given = {"size": size, "spacing": spacing}
     sizes: dict[str, Any] = {name: lengths(text, name=f"--{name}") for name, text in given.items() if text}
@@ -68,7 +69,6 @@ def command(
 
 def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON (SI units; None for what is not finite)."""
-    from dataclasses import asdict
     from math import isfinite
 
     def clean(value: Any) -> Any:
@@ -98,7 +98,6 @@ def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
 
 def _fit(fit: Any) -> dict[str, Any]:
     """A fit as a tree, without the heights that it was made from."""
-    from dataclasses import asdict, replace
 
     return {name: value for name, value in asdict(replace(fit, drawn=None)).items() if name != "drawn"}
 
@@ -106,7 +105,6 @@ def _fit(fit: Any) -> dict[str, Any]:
 def table(document: dict[str, Any]) -> str:
     """Format the document for the terminal."""
     from faying.output import table as tables
-    from faying.units import show
 
     def m(value: float | None, digits: int = 4) -> str:
         return "-" if value is None else show(value, "m", digits=digits)
