@@ -1,5 +1,7 @@
 """Short texts of objects, for a console and for a notebook, and trees as JSON."""
 
+import csv
+import io
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -25,14 +27,22 @@ def titled(kind: str, name: str) -> str:
 
 def json_text(tree: Any) -> str:
     """A tree as JSON, indented; numbers that are not finite, which JSON does not know, become null."""
-    return json.dumps(_finite(tree), indent=2, allow_nan=False)
+    return json.dumps(finite(tree), indent=2, allow_nan=False)
 
 
-def _finite(tree: Any) -> Any:
+def csv_text(rows: Iterable[Sequence[Any]]) -> str:
+    """Rows as CSV, the heads first."""
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    return out.getvalue()
+
+
+def finite(tree: Any) -> Any:
+    """A tree of lists and tables with None in place of numbers that are not finite."""
     if isinstance(tree, Mapping):
-        return {name: _finite(value) for name, value in tree.items()}
+        return {name: finite(value) for name, value in tree.items()}
     if isinstance(tree, list | tuple):
-        return [_finite(value) for value in tree]
+        return [finite(value) for value in tree]
     return None if isinstance(tree, float) and not isfinite(tree) else tree
 
 

@@ -1,6 +1,7 @@
 """Text with units at the edges, SI floats inside: "12 kN" <-> 12000.0. The only file that imports pint."""
 
 import re
+from collections.abc import Iterable
 from functools import cache
 from math import isfinite
 from numbers import Real
@@ -206,6 +207,11 @@ def _name_like(unit: str) -> str:
 def load_text(load: float) -> str:
     """Write a preload [N] in kN: load_text(12000.0) is "12 kN"."""
     return f"{load / 1e3:.4g} kN"
+
+
+def in_mm(point: Iterable[float]) -> str:
+    """Write a point [m]: in_mm((0.01, 0.0, 0.005)) is "(10, 0, 5) mm"."""
+    return f"({', '.join(f'{1e3 * x:.4g}' for x in point)}) mm"
 
 
 def show(value: float, unit: str, *, digits: int = 4) -> str:

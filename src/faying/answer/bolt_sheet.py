@@ -9,6 +9,7 @@ import numpy as np
 
 from faying.answer.bolt_loads import BoltLoad, bolt_loads
 from faying.answer.bolt_numbers import bolt_numbers
+from faying.answer.load_answers import bare
 from faying.answer.tracks import shapes_of
 from faying.bolt.bolt import Bolt, FittedBolt
 from faying.bolt.sheet import Quantity, Row, evaluate
@@ -116,16 +117,8 @@ def bolt_sheet(
     """
     plan = Study.read(study)
     number = preload_index(plan.loads, preload)
-    bare = replace(
-        plan,
-        response=None,
-        hammer=None,
-        backbone=None,
-        alternatives=(),
-        modes=replace(plan.modes, levels=(), intervals=False),
-    )
     progress = Progress(5, report)
-    case = Case.of(bare, progress)
+    case = Case.of(bare(plan), progress)
     engine = engine_of("reanalysis", case)
     state = solve(case, number, engine, progress, ranges=False)
     numbers = bolt_numbers(case, [state], shapes_of(case, [state]))

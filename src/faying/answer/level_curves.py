@@ -1,13 +1,12 @@
 """Frequency and damping of all modes over their amplitude, by secant passes: a curve of each mode in seconds."""
 
-import csv
-import io
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from faying.answer.load_answers import bare
 from faying.answer.run import run
 from faying.backbones.choice import chosen, friction_of
 from faying.errors import InputError
@@ -30,6 +29,7 @@ from faying.style import (
     plain_numbers,
     shared_legend,
 )
+from faying.text import csv_text
 from faying.typing import Array
 from faying.units import load_text
 
@@ -115,14 +115,12 @@ class LevelCurves(Summary):
 
     def csv_text(self) -> str:
         """Return one row for each mode and level as text, units in the heading."""
-        out = io.StringIO()
-        rows = csv.writer(out, lineterminator="\n")
-        rows.writerow(["mode", "acceleration [m/s^2]", "frequency [Hz]", "damping [%]", "error of slip [%]"])
+        rows: list[list[Any]] = [["mode", "acceleration [m/s^2]", "frequency [Hz]", "damping [%]", "error of slip [%]"]]
         for mode in range(self.frequencies.shape[1]):
             for k, level in enumerate(self.levels):
                 numbers = (self.frequencies[k, mode], 100 * self.damping[k, mode], 100 * self.error[k, mode])
-                rows.writerow([mode + 1, f"{level:.6g}", *(f"{one:.8g}" for one in numbers)])
-        return out.getvalue()
+                rows.append([mode + 1, f"{level:.6g}", *(f"{one:.8g}" for one in numbers)])
+        return csv_text(rows)
 
     def to_csv(self, path: str | Path) -> Path:
         """Write the rows of `csv_text`; the file appears complete or not at all."""
@@ -225,16 +223,6 @@ def _bare(
 ) -> Result:
     """The run of one load with the damping at levels, and without what it does not ask for."""
     joints = tuple(replace(joint, friction=mu) for joint, mu in zip(study.joints, friction, strict=True))
-    modes = replace(study.modes, levels=levels, intervals=False)
-    bare = replace(
-        study,
-        preloads=study.preloads[index : index + 1],
-        joints=joints,
-        modes=modes,
-        alternatives=(),
-        backbone=None,
-        response=None,
-        test=None,
-        hammer=None,
-    )
-    return run(bare, report=report)
+    preloads = study.preloads[index : index + 1]
+    study = replace(bare(study), preloads=preloads, joints=joints, test=None)
+    return run(replace(study, modes=replace(study.modes, levels=levels)), report=report)

@@ -65,17 +65,15 @@ class Preloaded:
     head_friction: Array | None = None
 
 
+def bare(study: Study) -> Study:
+    """The study with its preloads and modes alone."""
+    modes = replace(study.modes, levels=(), intervals=False)
+    return replace(study, response=None, hammer=None, backbone=None, alternatives=(), modes=modes)
+
+
 def preloaded(study: Study, number: int, progress: Progress, *, modes: bool) -> Preloaded:
     """Solve a study at one of its preloads, counted from 0."""
-    bare = replace(
-        study,
-        response=None,
-        hammer=None,
-        backbone=None,
-        alternatives=(),
-        modes=replace(study.modes, levels=(), intervals=False),
-    )
-    case = Case.of(bare, progress)
+    case = Case.of(bare(study), progress)
     engine = engine_of("reanalysis", case)
     progress.begin(f"preload {study.preloads[number].name}")
     state = engine.preload(number)

@@ -8,6 +8,7 @@ from typing import Any, final
 import numpy as np
 
 from faying.errors import InputError
+from faying.result.fields import listed
 from faying.surface.convention import density
 from faying.surface.files.read import read_scan
 from faying.surface.form import levelled, prepared
@@ -101,7 +102,7 @@ class OpenScan:
         keep = _outline(values)
         return {
             "along": places[keep].tolist(),
-            "heights": [None if np.isnan(one) else float(one) for one in values[keep]],
+            "heights": listed(values[keep]),
             "at": float((index + 0.5) * other),
         }
 

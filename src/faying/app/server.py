@@ -80,18 +80,6 @@ class _Handler(BaseHTTPRequestHandler):
     server: Server
     server_version, sys_version = "Faying", ""
 
-    def do_GET(self) -> None:
-        self._serve()
-
-    def do_POST(self) -> None:
-        self._serve()
-
-    def do_PUT(self) -> None:
-        self._serve()
-
-    def do_DELETE(self) -> None:
-        self._serve()
-
     def log_message(self, format: str, *args: Any) -> None:
         """Say nothing: the terminal belongs to the user."""
 
@@ -117,6 +105,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._send_result(unquote(path.removeprefix("results/")))
         else:
             self._send_asset(path)
+
+    do_GET = do_POST = do_PUT = do_DELETE = _serve
 
     def _refusal(self) -> tuple[int, str] | None:
         """Status and reason where a request is not one of the page's own; None where it is."""

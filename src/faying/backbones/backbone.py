@@ -36,6 +36,7 @@ from faying.study.keys.law import LawChoice
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.typing import Array
+from faying.units import in_mm
 
 EXTRA_MODES = 14  # real modes beyond the one that is followed, in its basis
 SPRINGS = 32  # of the law's curve at a point
@@ -392,10 +393,9 @@ class _Prepared:
         at = self.choice.at
         node = int(np.argmax(size)) if at is None else nearest_node(mesh, at, "point of the backbone")
         if size[node] < STILL * size.max():
-            most = ", ".join(f"{1e3 * x:.4g}" for x in mesh.points[np.argmax(size)])
             raise InputError(
                 f"mode {self.choice.mode} hardly moves at this point ({size[node] / size.max():.1e} of its greatest "
-                f"motion); give another one, such as ({most}) mm, where it moves most"
+                f"motion); give another one, such as {in_mm(mesh.points[np.argmax(size)])}, where it moves most"
             )
         direction = shape[node] / size[node]
         functional = np.zeros(mesh.unknowns)

@@ -4,7 +4,6 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from faying.files import load_arrays, write_arrays
 from faying.microslip.epmc import EpmcPoint
 from faying.study.part_folder import PartFile
 from faying.typing import Array
@@ -20,20 +19,18 @@ class CurveStore(PartFile):
 
     def basis(self) -> Array | None:
         """The vectors that were kept, None where there are none."""
-        found = None if self.folder is None else load_arrays(self.folder / "basis.npz")
+        found = self.arrays("basis")
         return None if found is None else found.get("vectors")
 
     def keep_basis(self, vectors: Array) -> None:
         """Keep the basis in which the points are."""
-        if self.folder is not None:
-            write_arrays(self.folder / "basis.npz", {"vectors": vectors})
+        self.keep_arrays("basis", {"vectors": vectors})
 
     def points(self, curve: int) -> list[EpmcPoint]:
         """The points of a curve that were kept, in rising amplitude, up to the first that is damaged."""
         out: list[EpmcPoint] = []
-        while self.folder is not None:
-            found = load_arrays(self._file(curve, len(out)))
-            point = None if found is None else _point(found)
+        while (found := self.arrays(_name(curve, len(out)))) is not None:
+            point = _point(found)
             if point is None:
                 break
             out.append(point)
@@ -41,8 +38,6 @@ class CurveStore(PartFile):
 
     def keep(self, curve: int, number: int, point: EpmcPoint) -> None:
         """Keep one point of a curve."""
-        if self.folder is None:
-            return
         arrays: dict[str, Any] = {}
         for f in fields(point):
             value = getattr(point, f.name)
@@ -50,11 +45,11 @@ class CurveStore(PartFile):
                 arrays |= {f"{f.name}.{k}": part for k, part in enumerate(value)}
             else:
                 arrays[f.name] = value
-        write_arrays(self._file(curve, number), arrays)
+        self.keep_arrays(_name(curve, number), arrays)
 
-    def _file(self, curve: int, number: int) -> Path:
-        assert self.folder is not None
-        return self.folder / f"curve-{curve}-{number:04d}.npz"
+
+def _name(curve: int, number: int) -> str:
+    return f"curve-{curve}-{number:04d}"
 
 
 def _point(found: dict[str, Any]) -> EpmcPoint | None:

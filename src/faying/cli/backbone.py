@@ -12,6 +12,7 @@ from faying.cli.progress import Shown, progress_options
 from faying.errors import InputError
 from faying.files import new_folder
 from faying.output.terminal import folded
+from faying.units import in_mm
 
 
 @click.command()
@@ -168,9 +169,8 @@ def text(curve: Any) -> str:
     """The table, error bounds and notes of a curve for the terminal."""
     from faying.output import table
 
-    at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
     head = (
-        f"{curve.title}: mode {curve.mode}, {curve.settings}; at ({at}) mm\n"
+        f"{curve.title}: mode {curve.mode}, {curve.settings}; at {in_mm(curve.at)}\n"
         f"{curve.unknowns:,} unknowns in {curve.basis_size} vectors, harmonics 0 to {curve.harmonics}; at rest "
         f"{curve.linear_frequency:.3f} Hz\n"
     )

@@ -17,6 +17,7 @@ from faying.joint.shared_modes import modes_of
 from faying.joint.support_check import check_motions
 from faying.measured.mac import mac
 from faying.progress import Report
+from faying.result.fields import listed
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import load_text
@@ -106,9 +107,6 @@ class Condensed:
     def to_dict(self) -> dict[str, Any]:
         """Everything in SI units, for JSON; None in place of NaN."""
 
-        def plain(values: Array) -> list[float | None]:
-            return [None if np.isnan(v) else float(v) for v in values]
-
         return {
             "joint": self.name,
             "load": {"unit": "N", "values": self.load},
@@ -116,11 +114,11 @@ class Condensed:
             "stiffness": {"unit": "N/m, N, N m", "values": self.joint.stiffness.tolist()},
             "loss": {"unit": "N/m, N, N m", "values": None if self.lossless else self.joint.loss.tolist()},
             "points": {"unit": "m", "values": self.points.tolist()},
-            "frequencies": {"unit": "Hz", "values": plain(self.frequencies)},
-            "mean_ties": {"unit": "Hz", "values": plain(self.mean)},
-            "rigid_ties": {"unit": "Hz", "values": plain(self.rigid)},
-            "loss_factors": {"unit": "1", "values": None if self.lossless else plain(self.loss)},
-            "mean_ties_loss_factors": {"unit": "1", "values": None if self.lossless else plain(self.mean_loss)},
+            "frequencies": {"unit": "Hz", "values": listed(self.frequencies)},
+            "mean_ties": {"unit": "Hz", "values": listed(self.mean)},
+            "rigid_ties": {"unit": "Hz", "values": listed(self.rigid)},
+            "loss_factors": {"unit": "1", "values": None if self.lossless else listed(self.loss)},
+            "mean_ties_loss_factors": {"unit": "1", "values": None if self.lossless else listed(self.mean_loss)},
             "reach": {"unit": "Hz", "values": self.reach},
         }
 

@@ -21,7 +21,7 @@ from faying.style import (
     shared_legend,
 )
 from faying.typeset import name_of
-from faying.units import load_text
+from faying.units import in_mm, load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -165,8 +165,7 @@ def backbones(found: Prediction) -> Any:
         if curves.measured is not None:
             marks(ax, curves.measured, quantity, 0)
         framed(ax, quantity)
-    at = ", ".join(f"{1e3 * x:.4g}" for x in curves.at)
-    lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
+    lower.set_xlabel(f"acceleration at {in_mm(curves.at)} [m/s²]")
     upper.set_title(f"{headline(found.title)}: mode {curves.mode}, {load_text(curves.preload)}")
     shared_legend(fig, [upper], 2)
     return fig

@@ -8,7 +8,7 @@ from faying.errors import InputError
 from faying.identify.prediction import LEVELS, Prediction
 from faying.output.table import Rows
 from faying.output.table import text as aligned
-from faying.units import load_text
+from faying.units import in_mm, load_text
 
 WIDTH = 80  # columns of a terminal
 SHOWN = 0.03  # share of the variance from which an input is named
@@ -77,8 +77,7 @@ def observed_at(found: Prediction) -> str:
     curves = found.backbones
     if curves is None:
         return ""
-    at = ", ".join(f"{1e3 * x:.4g}" for x in curves.at)
-    return f"mode {curves.mode} at {load_text(curves.preload)}, acceleration at ({at}) mm"
+    return f"mode {curves.mode} at {load_text(curves.preload)}, acceleration at {in_mm(curves.at)}"
 
 
 def beside_test(found: Prediction) -> Rows:

@@ -10,7 +10,7 @@ from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.backbone_figure import ROUNDING, label
 from faying.result.response_figure import words
-from faying.units import load_text
+from faying.units import in_mm, load_text
 
 AROUND = 1.05  # room beside measured points, as a factor of the acceleration
 
@@ -53,5 +53,4 @@ def backbone_curves(curves: Sequence[Backbone], points: int = 200) -> dict[str, 
         frequency[place], damping[place] = measured.frequency, 100 * measured.damping
         marked = f"measured ({measured.source})"
         found[marked] = (frequency, damping)
-    at = ", ".join(f"{1e3 * x:.4g}" for x in curves[0].at)
-    return packed_backbones(f"acceleration at ({at}) mm [m/s²]", grid, found, marked)
+    return packed_backbones(f"acceleration at {in_mm(curves[0].at)} [m/s²]", grid, found, marked)

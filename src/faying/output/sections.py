@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from faying.output import answer, table
 from faying.output.table import Rows
 from faying.result import Result
-from faying.units import load_text
+from faying.units import in_mm, load_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,13 +176,12 @@ def _backbones(result: Result) -> Iterator[ReportSection]:
     """Curves of a mode over its amplitude, and what coarser computations would change."""
     for curve in result.backbones:
         what = f"mode {curve.mode} over amplitude, {curve.settings}"
-        at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
         yield ReportSection(
             name="backbone",
             rows=table.backbone(curve),
             title=f"{what[0].upper()}{what[1:]}",
-            line=f"{what}, at ({at}) mm; at rest {curve.linear_frequency:.3f} Hz; ends: {curve.reason}",
-            below=f"At ({at}) mm; at rest {curve.linear_frequency:.3f} Hz. Ends: {curve.reason}.",
+            line=f"{what}, at {in_mm(curve.at)}; at rest {curve.linear_frequency:.3f} Hz; ends: {curve.reason}",
+            below=f"At {in_mm(curve.at)}; at rest {curve.linear_frequency:.3f} Hz. Ends: {curve.reason}.",
         )
         if curve.measured is not None:
             yield ReportSection(

@@ -1,7 +1,5 @@
 """Frequency and damping of a mode against its amplitude: the curve with its error bounds, and what follows from it."""
 
-import csv
-import io
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -15,8 +13,9 @@ from faying.misuse import checked_call
 from faying.notes import Note
 from faying.result.fields import Recorded, declared, in_units, listed, variable
 from faying.result.provenance import Provenance
+from faying.text import csv_text
 from faying.typing import Array, Index
-from faying.units import load_text
+from faying.units import in_mm, load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -145,8 +144,8 @@ class Backbone(Recorded):
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and some points of the curve."""
         head = f"Backbone {self.title!r}: mode {self.mode}, {self.settings}"
-        at = ", ".join(f"{1e3 * x:.4g}" for x in self.at)
-        rows = {"at rest": f"{self.linear_frequency:.3f} Hz, damping ratio {self.rest_damping:.3g}, seen at ({at}) mm"}
+        rest = f"{self.linear_frequency:.3f} Hz, damping ratio {self.rest_damping:.3g}, seen at {in_mm(self.at)}"
+        rows = {"at rest": rest}
         count = len(self.acceleration)
         for k in np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).round().astype(int)):
             rows[f"{self.acceleration[k]:.4g} m/s2"] = (
@@ -328,11 +327,8 @@ class Backbone(Recorded):
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each amplitude, units in the heading; the file appears complete or not at all."""
-        out = io.StringIO()
-        rows = csv.writer(out, lineterminator="\n")
         names = ("acceleration", "frequency", "damping", "modal_amplitude", "displacement", "slipping", "open")
         units = declared(type(self))
-        rows.writerow([f"{name} [{'-' if units[name].unit == '1' else units[name].unit}]" for name in names])
-        for k in range(len(self.acceleration)):
-            rows.writerow([f"{float(getattr(self, name)[k]):.8g}" for name in names])
-        return write_text(Path(path), out.getvalue())
+        heads = [f"{name} [{'-' if units[name].unit == '1' else units[name].unit}]" for name in names]
+        columns = ([f"{value:.8g}" for value in getattr(self, name)] for name in names)
+        return write_text(Path(path), csv_text([heads, *zip(*columns, strict=True)]))

@@ -9,7 +9,7 @@ import numpy as np
 from faying.measured.ring_down import MeasuredBackbone
 from faying.result.backbone import Backbone
 from faying.style import COLUMN, axes_of, colour, drawing, headline, legend_above, new_figure, plain, plain_numbers
-from faying.units import load_text
+from faying.units import in_mm, load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -118,8 +118,7 @@ def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()
     panel(upper, curves, "frequency", measured)
     panel(lower, curves, "damping", measured)
     first = curves[0]
-    at = ", ".join(f"{1e3 * x:.4g}" for x in first.at)
-    lower.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
+    lower.set_xlabel(f"acceleration at {in_mm(first.at)} [m/s²]")
     fig.suptitle(f"{headline(first.title)}: mode {first.mode}")
     legend_above(upper, 1)
     return fig
@@ -129,10 +128,9 @@ def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()
 def backbone_axes(curve: Backbone, ax: Any = None) -> "list[Axes]":
     """Draw frequency and damping of a curve, one axes each."""
     axes = axes_of(ax, 2, width=COLUMN, height=2.7)
-    at = ", ".join(f"{1e3 * x:.4g}" for x in curve.at)
     for one, quantity in zip(axes, ("frequency", "damping"), strict=True):
         panel(one, [curve], quantity)
-        one.set_xlabel(f"acceleration at ({at}) mm [m/s²]")
+        one.set_xlabel(f"acceleration at {in_mm(curve.at)} [m/s²]")
     axes[1].set_title(f"{headline(curve.title)}: mode {curve.mode}, {load_text(curve.preload)}")
     legend_above(axes[0], 1)
     return axes

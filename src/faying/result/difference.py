@@ -1,7 +1,5 @@
 """Two results of one structure compared: which mode is which, and how frequencies, losses and pressures differ."""
 
-import csv
-import io
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -12,7 +10,7 @@ from faying.measured.mac import mac
 from faying.misuse import checked_call
 from faying.result.result import Result
 from faying.style import Summary
-from faying.text import few
+from faying.text import csv_text, few
 from faying.typing import Array, Index
 from faying.units import load_text
 
@@ -97,13 +95,10 @@ class RunDifference(Summary):
 
     def csv_text(self) -> str:
         """The pairs of modes as CSV, SI, units in the heading."""
-        out = io.StringIO()
-        rows = csv.writer(out, lineterminator="\n")
         sides = [f"{which} {what}" for what in ("frequency [Hz]", "loss factor [-]") for which in ("first", "second")]
-        rows.writerow(["first mode", "second mode", *sides, "MAC [-]"])
         columns = zip(self.modes + 1, *self.frequencies, *self.loss_factors, self.mac, strict=True)
-        rows.writerows([*pair, *map(float, numbers)] for pair, *numbers in columns)
-        return out.getvalue()
+        rows = ([*pair, *map(float, numbers)] for pair, *numbers in columns)
+        return csv_text([["first mode", "second mode", *sides, "MAC [-]"], *rows])
 
     def of_joint(self, name: str) -> "tuple[JointNumbers, JointNumbers]":
         """Numbers of a joint in both."""

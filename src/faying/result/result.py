@@ -1,7 +1,5 @@
 """The result of a study: frozen arrays with names, dimensions and units, and the facts that they belong to."""
 
-import csv
-import io
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -21,7 +19,7 @@ from faying.result.bolts import BoltNumbers
 from faying.result.fields import Recorded, in_units, load_texts, optional, variable
 from faying.result.interval import Interval
 from faying.result.provenance import Provenance
-from faying.text import listed
+from faying.text import csv_text, listed
 from faying.typing import Array, Complex, Index
 
 if TYPE_CHECKING:
@@ -479,8 +477,6 @@ class Result(Recorded):
 
     def csv_text(self) -> str:
         """Return the rows of to_csv as text."""
-        out = io.StringIO()
-        rows = csv.writer(out, lineterminator="\n")
         columns = [
             ("frequency", self.frequencies),
             ("loss factor", self.loss_factors),
@@ -497,12 +493,12 @@ class Result(Recorded):
             at = [(level, self.level_damping[:, k]) for k, level in enumerate(self.levels)]
             heads += [f"damping ratio at {level:g} m/s2 [-]" for level, _ in at]
             kept += [("", values) for _, values in at]
-        rows.writerow(["preload [N]", "mode", *heads])
+        rows: list[list[Any]] = [["preload [N]", "mode", *heads]]
         for i, load in enumerate(self.loads):
             for j in range(len(self.bonded)):
                 row = [float(values[i, j]) for _, values in kept]
-                rows.writerow([f"{load:.6g}", j + 1, *("" if np.isnan(v) else f"{v:.8g}" for v in row)])
-        return out.getvalue()
+                rows.append([f"{load:.6g}", j + 1, *("" if np.isnan(v) else f"{v:.8g}" for v in row)])
+        return csv_text(rows)
 
 
 @checked_call

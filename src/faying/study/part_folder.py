@@ -3,12 +3,13 @@
 import hashlib
 import json
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, Any, Self
 
 from faying import __version__
 from faying.errors import FayingError, InputError
-from faying.files import write_text
+from faying.files import load_arrays, write_arrays, write_text
 from faying.study.study import Study
 
 
@@ -94,6 +95,15 @@ class PartFile:
         if isinstance(fault, FayingError) and not any(self._part.path.rglob("*.npz")):
             self._part.remove()
         self._part.close()
+
+    def arrays(self, name: str) -> dict[str, Any] | None:
+        """The arrays of NAME.npz in the folder; None where they are missing or damaged, or nothing is kept."""
+        return None if self.folder is None else load_arrays(self.folder / f"{name}.npz")
+
+    def keep_arrays(self, name: str, arrays: Mapping[str, Any]) -> None:
+        """Keep arrays in NAME.npz, where anything is kept."""
+        if self.folder is not None:
+            write_arrays(self.folder / f"{name}.npz", arrays)
 
     def finish(self) -> None:
         """Remove the folder: the work is done."""

@@ -1,6 +1,6 @@
 """What a sweep keeps on disk while it runs, and the NetCDF file it ends in."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -8,13 +8,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from faying import netcdf
-from faying.files import load_arrays, write_arrays
+from faying.files import load_arrays
 from faying.netcdf import Variable
 from faying.reduction.reduced import ReducedModel
 from faying.study.part_folder import PartFile
 from faying.sweeps.axes import Axis, Grid
 from faying.typing import Array
 
+OF_MODES = ("frequencies", "loss_factors")  # columns with a value for each mode
 BEYOND = 0.1  # share of the contact beyond the end of the law from which a point is told
 
 
@@ -80,11 +81,9 @@ class SweepStore(PartFile):
 
     def __init__(self, out: Path, fingerprint: str, size: int, count: int) -> None:
         super().__init__(out, fingerprint, what="sweep")
-        assert self.folder is not None
-        self.out, self.kept = out, self.folder
+        self.out = out
         self.rows: dict[str, Array] = {
-            name: np.full((size, count) if name in ("frequencies", "loss_factors") else size, np.nan)
-            for name in self.COLUMNS
+            name: np.full((size, count) if name in OF_MODES else size, np.nan) for name in self.COLUMNS
         }
         self.reasons = np.full(size, "", dtype=object)
         self.done = np.zeros(size, dtype=bool)
@@ -93,7 +92,8 @@ class SweepStore(PartFile):
 
     def _take_up(self) -> None:
         """Take up what an interrupted sweep has left."""
-        chunks = sorted(self.kept.glob("chunk-*.npz"))
+        assert self.folder is not None
+        chunks = sorted(self.folder.glob("chunk-*.npz"))
         for file in chunks:
             rows = load_arrays(file)
             if rows is None or not {"indices", "reasons", *self.COLUMNS} <= rows.keys():
@@ -112,16 +112,16 @@ class SweepStore(PartFile):
     def keep(self, indices: Sequence[int], rows: dict[str, Array]) -> None:
         """Note rows and write them, whole or not at all."""
         self._take(np.asarray(indices), rows)
-        write_arrays(self.kept / f"chunk-{self.number:06d}.npz", {"indices": np.asarray(indices), **rows})
+        self.keep_arrays(f"chunk-{self.number:06d}", {"indices": np.asarray(indices), **rows})
         self.number += 1
 
     def keep_model(self, model: ReducedModel) -> None:
         """Write the reduced model."""
-        write_arrays(self.kept / "model.npz", model.arrays())
+        self.keep_arrays("model", model.arrays())
 
     def model(self) -> ReducedModel | None:
         """Return the reduced model that an interrupted sweep left, if it came that far."""
-        return kept_model(self.kept / "model.npz")
+        return kept_model(self.arrays("model"))
 
     def written(self, grid: Grid, *, title: str, tolerance: float, unknowns: int, model: ReducedModel) -> Sweep:
         """Write the NetCDF file and remove what was kept on the way."""
@@ -143,9 +143,8 @@ class SweepStore(PartFile):
         return done
 
 
-def kept_model(file: Path) -> ReducedModel | None:
-    """The reduced model of a file; None where it is missing or damaged."""
-    data = load_arrays(file)
+def kept_model(data: Mapping[str, Array] | None) -> ReducedModel | None:
+    """The reduced model of what was kept; None where that is missing or damaged."""
     try:
         return None if data is None else ReducedModel.from_arrays(data)
     except KeyError:
@@ -164,7 +163,7 @@ def _netcdf(sweep: Sweep) -> Path:
         values = np.array(axis.values, dtype=float if axis.numeric else object)
         variables[name] = Variable(dims=(name,), values=values, unit=axis.unit or "1", long_name=axis.key)
     for column in SweepStore.COLUMNS:
-        dims = (*names, "mode") if column in ("frequencies", "loss_factors") else names
+        dims = (*names, "mode") if column in OF_MODES else names
         variables[column] = Variable(dims=dims, values=getattr(sweep, column), unit=UNITS.get(column, "1"))
     attributes: dict[str, str | int | float] = {
         "title": sweep.title or " ",

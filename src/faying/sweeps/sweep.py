@@ -15,8 +15,8 @@ from faying.reduction.reduced import ReducedModel
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.sweeps.axes import Axis, Grid
-from faying.sweeps.files import Sweep, SweepStore
-from faying.sweeps.parallel import each
+from faying.sweeps.files import OF_MODES, Sweep, SweepStore
+from faying.sweeps.parallel import each, rows_of
 from faying.sweeps.trainer import FAR, Trainer
 from faying.sweeps.variant_builder import VariantBuilder, contact_shares
 from faying.typing import Array
@@ -27,41 +27,27 @@ MOST_LAWS = 100  # looked at before there is a mesh
 
 def evaluate(model: ReducedModel, recipe: VariantBuilder, indices: Sequence[int]) -> dict[str, Array]:
     """Evaluate some points; rows of what the sweep stores, NaN where a point has no answer, and `reasons`."""
-    rows: dict[str, list[Any]] = {name: [] for name in (*SweepStore.COLUMNS, "reasons")}
-    weights = np.concatenate(model.weights)
+    weights, lost = np.concatenate(model.weights), np.full(model.count, np.nan)
     start: Array | None = None
-    for index in indices:
-        nothing = np.full(model.count, np.nan)
-        row: dict[str, Any] = {
-            "frequencies": nothing,
-            "loss_factors": nothing,
-            "estimate": np.nan,
-            "greatest_pressure": np.nan,
-            "open_share": np.nan,
-            "above_range_share": np.nan,
+
+    def answer(index: int) -> dict[str, Any]:
+        nonlocal start
+        before, start = start, None  # a point without an answer starts no other
+        laws, forces, friction = recipe.laws(index)
+        found = recipe.model_at(model, index).evaluate(laws, forces, friction, before)
+        start = found.preload.displacement
+        open_share, above_range = contact_shares(weights, laws, found.preload.pressures)
+        return {
+            "frequencies": found.frequencies,
+            "loss_factors": found.loss_factors if any(law.predicts_loss for law in laws) else lost,
+            "estimate": found.estimate.max(),
+            "greatest_pressure": np.concatenate(found.preload.pressures).max(),
+            "open_share": open_share,
+            "above_range_share": above_range,
         }
-        reason = ""
-        try:
-            laws, forces, friction = recipe.laws(index)
-            varied = model.with_gaps(recipe.gaps(index)).with_scales(recipe.scales(index))
-            found = varied.evaluate(laws, forces, friction, start)
-            start = found.preload.displacement
-            open_share, beyond = contact_shares(weights, laws, found.preload.pressures)
-            row |= {
-                "estimate": found.estimate.max(),
-                "greatest_pressure": np.concatenate(found.preload.pressures).max(),
-                "above_range_share": beyond,
-                "open_share": open_share,
-            }
-            lost = found.loss_factors if any(law.predicts_loss for law in laws) else nothing
-            row |= {"frequencies": found.frequencies, "loss_factors": lost}
-        except FayingError as fault:
-            reason = str(fault)
-            start = None
-        for name, value in row.items():
-            rows[name].append(value)
-        rows["reasons"].append(reason)
-    return {name: np.array(values) for name, values in rows.items()}
+
+    nothing = {name: lost if name in OF_MODES else np.nan for name in SweepStore.COLUMNS}
+    return rows_of(indices, answer, nothing)
 
 
 @checked_call

@@ -132,8 +132,7 @@ class Trainer:
             self.report("compression", 0, 0)
             try:
                 laws, forces, friction = self.recipe.laws(index)
-                here = model.with_gaps(self.recipe.gaps(index)).with_scales(self.recipe.scales(index))
-                found = here.evaluate(laws, forces, friction, start)
+                found = self.recipe.model_at(model, index).evaluate(laws, forces, friction, start)
             except FayingError:
                 start = None
                 continue
@@ -146,9 +145,8 @@ class Trainer:
         assert reduction is not None
         try:
             laws, forces, friction = self.recipe.laws(index)
-            model = reduction.model.with_gaps(self.recipe.gaps(index)).with_scales(self.recipe.scales(index))
-            reduction.model = model
-            found = model.equilibrium(laws, forces, friction)
+            reduction.model = self.recipe.model_at(reduction.model, index)
+            found = reduction.model.equilibrium(laws, forces, friction)
             return reduction.frequency_error(laws, forces, friction, found, self.study.modes.count)
         except FayingError:
             return float("nan")
@@ -160,8 +158,7 @@ class Trainer:
             self.report("check", 0, 0)
             try:
                 laws, forces, friction = self.recipe.laws(index)
-                model = reduction.model.with_gaps(self.recipe.gaps(index)).with_scales(self.recipe.scales(index))
-                reduction.model = model
+                reduction.model = self.recipe.model_at(reduction.model, index)
                 found = reduction.model.equilibrium(laws, forces, friction)
                 error, _ = reduction.modal_error(laws, found.pressures)
                 balance, _ = reduction.static_error(laws, forces, friction, found)

@@ -15,6 +15,7 @@ from faying.joint.preload_case import PreloadCase
 from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.reduction.part_shares import Scales
+from faying.reduction.reduced import ReducedModel
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
 from faying.sweeps.variation import StudyVariant
@@ -155,6 +156,10 @@ class VariantBuilder:
             law, factor = self._lately[key], point.stiffness.get(joint.name, 1.0)
             laws.append(law if factor == 1 else law.scaled(factor))
         return laws, point.forces, [joint.friction for joint in point.study.joints]
+
+    def model_at(self, model: ReducedModel, index: int) -> ReducedModel:
+        """A model of the structure with the gaps and the scales of one point."""
+        return model.with_gaps(self.gaps(index)).with_scales(self.scales(index))
 
     def scales(self, index: int) -> Scales | None:
         """Factors on the stiffness and the mass of each part that varies; None where none does."""

@@ -7,7 +7,7 @@ import click
 
 from faying.output.terminal import WIDTH, folded
 from faying.surface.estimators.table import METHODS
-from faying.text import json_text
+from faying.text import finite, json_text
 from faying.units import lengths, show
 
 
@@ -69,15 +69,6 @@ def command(
 
 def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON (SI units; None for what is not finite)."""
-    from math import isfinite
-
-    def clean(value: Any) -> Any:
-        if isinstance(value, float):
-            return value if isfinite(value) else None
-        if isinstance(value, (list, tuple)):
-            return [clean(v) for v in value]
-        return {k: clean(v) for k, v in value.items()} if isinstance(value, dict) else value
-
     shape = list(scan.heights.shape)
     spacing = list(scan.spacing) if len(shape) == 2 else [scan.spacing]
     size = list(scan.size) if len(shape) == 2 else [scan.length]
@@ -93,7 +84,7 @@ def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
         "fits": {n: {"error": f} if isinstance(f, str) else _fit(f) for n, f in fits.items()},
         "units": "SI: lengths in metres",
     }
-    return dict(clean(out))
+    return dict(finite(out))
 
 
 def _fit(fit: Any) -> dict[str, Any]:

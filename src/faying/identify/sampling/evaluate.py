@@ -20,7 +20,7 @@ from faying.measured.pairing import pair_over_loads
 from faying.progress import Report, silent
 from faying.reduction.reduced import ReducedModel, Variant
 from faying.study.keys.test import TestChoice
-from faying.sweeps.parallel import Rows, each
+from faying.sweeps.parallel import Rows, each, rows_of
 from faying.sweeps.trainer import Trainer
 from faying.sweeps.variant_builder import VariantBuilder, contact_shares
 from faying.typing import Array, Index
@@ -34,6 +34,8 @@ ROUNDS = 2  # of training at samples that the bases do not fit
 WORST = 4  # samples trained on in each round
 LEARNT = 64  # samples, at all of their loads, to whose needs the bases are compressed
 NEW = 16  # of those that bases do not fit, worst first: to whose needs they are compressed after they have grown
+OF_MODES = ("frequencies", "loss_factors", "named", "named_loss")  # columns of rows with a value for each mode
+OF_LOADS = ("estimate", "open_share", "above_range_share")  # and those with one for each load
 GAINED = 0.9  # of the samples that the bases do not fit: a round that leaves more of them is the last
 
 
@@ -67,32 +69,15 @@ class Evaluator:
         ensemble, count = self.ensemble, self.model.count
         modes = ensemble.loads, count
         tested = 0 if self.test is None else len(self.test.frequencies[0])
-        rows: dict[str, list[Any]] = {}
-        for sample in samples:
-            row: dict[str, Any] = {
-                "frequencies": np.full(modes, np.nan),
-                "loss_factors": np.full(modes, np.nan),
-                "named": np.full(modes, np.nan),
-                "named_loss": np.full(modes, np.nan),
-                "modes": np.full(tested, np.nan),
-                "estimate": np.full(ensemble.loads, np.nan),
-                "open_share": np.full(ensemble.loads, np.nan),
-                "above_range_share": np.full(ensemble.loads, np.nan),
-                "reasons": "",
-            }
-            try:
-                row |= self._one(sample)
-            except FayingError as fault:
-                row["reasons"] = str(fault)
-            for name, value in row.items():
-                rows.setdefault(name, []).append(value)
-        return {name: np.array(values) for name, values in rows.items()}
+        nothing: dict[str, Any] = dict.fromkeys(OF_MODES, np.full(modes, np.nan))
+        nothing |= dict.fromkeys(OF_LOADS, np.full(ensemble.loads, np.nan))
+        return rows_of(samples, self._one, {**nothing, "modes": np.full(tested, np.nan)})
 
     def solved(self, sample: int) -> tuple[ReducedModel, list[Variant], list[JointLaw]]:
         """One sample at all loads, with the model under its form and scales, and its laws."""
         ensemble, recipe = self.ensemble, self.recipe
         first = (ensemble.training + sample) * ensemble.loads
-        model = self.model.with_gaps(recipe.gaps(first)).with_scales(recipe.scales(first))
+        model = recipe.model_at(self.model, first)
         found: list[Variant] = []
         usual = [one.preload.displacement for one in self.median]
         for load in range(ensemble.loads):

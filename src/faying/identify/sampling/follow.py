@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from faying.backbones.backbone import curve_like, median_of
 from faying.backbones.choice import friction_of
 from faying.backbones.result import measured_points
-from faying.errors import FayingError, InputError
+from faying.errors import InputError
 from faying.identify.backbones import Backbones
 from faying.identify.identity import LIKE
 from faying.identify.sampling.ensemble import Ensemble, by_reason
@@ -20,7 +20,7 @@ from faying.microslip.epmc import PER_DECADE
 from faying.result.backbone import Backbone
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.study import Study
-from faying.sweeps.parallel import Rows, each
+from faying.sweeps.parallel import Rows, each, rows_of
 from faying.sweeps.variant_builder import VariantBuilder
 from faying.typing import Array
 
@@ -119,22 +119,16 @@ class Follower:
 
     def rows(self, samples: Sequence[int]) -> Rows:
         """Frequency [Hz] and damping [-] of some samples on the grid, why each ends early, and why it has none."""
-        rows: dict[str, list[Array | str]] = {"frequencies": [], "damping": [], "ends": [], "reasons": []}
-        for sample in samples:
-            frequency, damping = np.full((2, len(self.grid)), np.nan)
-            end = reason = ""
-            try:
-                curve = self.curve(sample)
-            except FayingError as fault:
-                reason = str(fault)
-            else:
-                whole, last = curve.code == "amplitude", curve.acceleration[-1]
-                inside = whole | (self.grid <= last)  # a curve that is whole may end some tenths of a percent before
-                frequency[inside], damping[inside] = curve.at_acceleration(np.minimum(self.grid[inside], last))
-                end = "" if whole else curve.reason
-            for name, value in (("frequencies", frequency), ("damping", damping), ("ends", end), ("reasons", reason)):
-                rows[name].append(value)
-        return {name: np.array(values) for name, values in rows.items()}
+        nothing = {"frequencies": np.full(len(self.grid), np.nan), "damping": np.full(len(self.grid), np.nan)}
+        return rows_of(samples, self._on_grid, {**nothing, "ends": ""})
+
+    def _on_grid(self, sample: int) -> dict[str, Any]:
+        curve = self.curve(sample)
+        frequency, damping = np.full((2, len(self.grid)), np.nan)
+        complete, last = curve.code == "amplitude", curve.acceleration[-1]
+        inside = complete | (self.grid <= last)  # a complete curve may end some tenths of a percent before
+        frequency[inside], damping[inside] = curve.at_acceleration(np.minimum(self.grid[inside], last))
+        return {"frequencies": frequency, "damping": damping, "ends": "" if complete else curve.reason}
 
     def follow(self, count: int, reduced: Reduced) -> Backbones:
         """The backbones of the first samples; what is done is kept with what else the prediction keeps."""

@@ -1,6 +1,5 @@
 """What a prediction or an identification keeps on disk: the bases, and every chunk of samples as it is done."""
 
-from faying.files import load_arrays, write_arrays
 from faying.reduction.reduce import Reduction
 from faying.reduction.reduced import ReducedModel
 from faying.study.part_folder import PartFile
@@ -16,9 +15,7 @@ class SampleStore(PartFile):
 
     def model(self) -> Bases | None:
         """The bases that were kept, and what the test sees of them."""
-        if self.folder is None:
-            return None
-        model, seen = kept_model(self.folder / "model.npz"), load_arrays(self.folder / "seen.npz")
+        model, seen = kept_model(self.arrays("model")), self.arrays("seen")
         if model is None or seen is None:
             return None
         return model, (seen["basis"], seen["rigid"]) if "basis" in seen else None
@@ -26,20 +23,19 @@ class SampleStore(PartFile):
     def keep(self, model: ReducedModel, seen: tuple[Array, Array] | None, reduction: Reduction) -> None:
         """Keep the bases: projected, and in full, so that they can grow on."""
         if self.folder is not None:
-            write_arrays(self.folder / "bases.npz", reduction.arrays())
-            write_arrays(self.folder / "seen.npz", {} if seen is None else {"basis": seen[0], "rigid": seen[1]})
-            write_arrays(self.folder / "model.npz", model.arrays())
+            self.keep_arrays("bases", reduction.arrays())
+            self.keep_arrays("seen", {} if seen is None else {"basis": seen[0], "rigid": seen[1]})
+            self.keep_arrays("model", model.arrays())
 
     def bases(self) -> dict[str, Array] | None:
         """The bases in full, for `Reduction.resumed`; None where they are missing or damaged."""
-        return None if self.folder is None else load_arrays(self.folder / "bases.npz")
+        return self.arrays("bases")
 
     def rows(self, what: str, number: int) -> Rows | None:
         """A chunk of samples that was kept; None where it is missing or damaged."""
-        return None if self.folder is None else load_arrays(self.folder / f"{what}-{number:06d}.npz")
+        return self.arrays(f"{what}-{number:06d}")
 
     def keep_rows(self, what: str, number: int, rows: Rows) -> None:
         """Keep a chunk of samples."""
-        if self.folder is not None:
-            plain = {name: values.astype(str) if name == "reasons" else values for name, values in rows.items()}
-            write_arrays(self.folder / f"{what}-{number:06d}.npz", plain)
+        plain = {name: values.astype(str) if name == "reasons" else values for name, values in rows.items()}
+        self.keep_arrays(f"{what}-{number:06d}", plain)

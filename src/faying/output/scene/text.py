@@ -35,6 +35,7 @@ from typing import Any
 import numpy as np
 
 from faying.output.scene.model import Scene, SceneJoint, SceneModes
+from faying.result.fields import listed
 from faying.typing import Array
 
 VERSION = 1
@@ -149,8 +150,7 @@ def _modes(modes: SceneModes | None, arrays: dict[str, Any]) -> dict[str, Any] |
             arrays[f"imaginary.{load}.{mode}"] = packed(imaginary, "i2", scale)
         kept = (arrays.get(f"{part}.{load}.{mode}") for part in ("real", "imaginary"))
         room -= sum(len(one["data"]) for one in kept if one is not None)
-    lost = [[None if np.isnan(eta) else float(eta) for eta in row] for row in modes.loss_factors]
-    return {"frequencies": modes.frequencies.tolist(), "loss_factors": lost}
+    return {"frequencies": modes.frequencies.tolist(), "loss_factors": listed(modes.loss_factors)}
 
 
 def packed(values: Any, kind: str, scale: float = 1.0) -> dict[str, Any]:
