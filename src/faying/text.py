@@ -30,6 +30,13 @@ def json_text(tree: Any) -> str:
     return json.dumps(finite(tree), indent=2, allow_nan=False)
 
 
+def in_columns(*columns: tuple[str, Iterable[Any], str]) -> list[list[str]]:
+    """Rows of text, the heads first, from columns: head, values, format; a dash stands for NaN."""
+    heads = [head for head, _, _ in columns]
+    cells = [["-" if value != value else format(value, form) for value in values] for _, values, form in columns]
+    return [heads, *map(list, zip(*cells, strict=True))]
+
+
 def csv_text(rows: Iterable[Sequence[Any]]) -> str:
     """Rows as CSV, the heads first."""
     out = io.StringIO()

@@ -29,7 +29,7 @@ from faying.style import (
     plain_numbers,
     shared_legend,
 )
-from faying.text import csv_text
+from faying.text import csv_text, in_columns
 from faying.typing import Array
 from faying.units import load_text
 
@@ -140,24 +140,17 @@ def rows(curves: LevelCurves) -> list[list[str]]:
 
 def balanced_rows(curves: LevelCurves, curve: Backbone) -> list[list[str]]:
     """One row per level that a curve by harmonic balance reaches: frequency and damping of both."""
-    out = [["m/s2", "quick [Hz]", "balanced [Hz]", "quick [%]", "balanced [%]", "error of quick [%]"]]
-    for k, level in enumerate(curves.levels):
-        if not curve.acceleration[0] <= level <= curve.acceleration[-1]:
-            continue
-        f, z = curve.at_acceleration(level)
-        own = curves.frequencies[k, curve.mode - 1], 100 * curves.damping[k, curve.mode - 1]
-        error = 100 * curves.error[k, curve.mode - 1]
-        out.append(
-            [
-                f"{level:.3g}",
-                f"{own[0]:.3f}",
-                f"{float(f):.3f}",
-                f"{own[1]:.4g}",
-                f"{100 * float(z):.4g}",
-                f"{error:.2g}",
-            ]
-        )
-    return out
+    reached = (curve.acceleration[0] <= curves.levels) & (curves.levels <= curve.acceleration[-1])
+    f, z = curve.at_acceleration(curves.levels[reached])
+    own, damping, error = (rows[reached, curve.mode - 1] for rows in (curves.frequencies, curves.damping, curves.error))
+    return in_columns(
+        ("m/s2", curves.levels[reached], ".3g"),
+        ("quick [Hz]", own, ".3f"),
+        ("balanced [Hz]", f, ".3f"),
+        ("quick [%]", 100 * damping, ".4g"),
+        ("balanced [%]", 100 * z, ".4g"),
+        ("error of quick [%]", 100 * error, ".2g"),
+    )
 
 
 @checked_call

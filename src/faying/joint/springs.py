@@ -54,6 +54,11 @@ class Springs(Generic[Motion]):
         """Imaginary part of the stiffness matrix [N/m]: hysteretic loss."""
         return self.interface.springs(self.k_n * self.loss_n, self.k_t * self.loss_t)
 
+    @property
+    def lossy(self) -> bool:
+        """Whether any of them loses energy."""
+        return bool(np.any(self.loss_n) or np.any(self.loss_t))
+
     def viscous(self, mass: float) -> Any:
         """Damping matrix [N s/m] of the JK paper's dampers, c = eta sqrt(M k) at every point, M [kg] the whole mass.
 

@@ -372,7 +372,7 @@ class Structure(Summary):
         from scipy.sparse import csr_array
 
         weight = float(self.matrices[1].sum()) / 3 if viscous else 0.0
-        lossy = [s for s in springs if np.any(s.loss_n) or np.any(s.loss_t)]
+        lossy = [s for s in springs if s.lossy]
         losses = [s.viscous(weight) if viscous else s.loss() for s in lossy]
         return added(csr_array(self.matrices[0].shape), [constrain(loss, self.fixed, 0.0) for loss in losses])
 

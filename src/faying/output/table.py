@@ -11,7 +11,9 @@ from faying.measured.ring_down import MeasuredBackbone
 from faying.output.terminal import text as text
 from faying.result import Result
 from faying.result.backbone import Backbone
+from faying.result.difference import of_joint
 from faying.result.result import preload_slope
+from faying.text import in_columns
 from faying.typing import Array
 from faying.units import load_text, show
 
@@ -198,18 +200,16 @@ def joints(result: Result) -> Rows:
     heads = ["preload", "joint", "greatest p [MPa]", "mean p [MPa]", "open [%]", *["slipping [%]"] * slips]
     rows: Rows = [[*heads, "total k_n [N/m]", "total k_t [N/m]", "imbalance"]]
     for (i, load), (k, name) in product(enumerate(result.loads), enumerate(result.joints)):
-        here = result.joint_of_point == k
-        weights, pressure = result.weights[here], result.pressure[i][here]
-        area = float(weights.sum())
+        here = of_joint(result, i, k)
         rows.append(
             [
                 load_text(load),
                 name,
-                f"{pressure.max() * 1e-6:.3g}",
-                f"{float(weights @ pressure) / area * 1e-6:.3g}",
-                f"{100 * float(weights @ (pressure <= 0)) / area:.1f}",
+                f"{here.greatest * 1e-6:.3g}",
+                f"{here.mean * 1e-6:.3g}",
+                f"{100 * here.open_share:.1f}",
                 *[f"{100 * result.slipping[i, k]:.1f}"] * slips,
-                f"{result.total_k_n[i, k]:.4g}",
+                f"{here.stiffness:.4g}",
                 f"{result.total_k_t[i, k]:.4g}",
                 f"{result.imbalance[i]:.0e}",
             ]
@@ -257,49 +257,34 @@ def bolting(result: Result) -> Rows:
     b = result.bolt_numbers
     if b is None:
         return []
-    rows: Rows = [
-        [
-            "preload",
-            "bolt",
-            "force [kN]",
-            "delta_S [um/kN]",
-            "delta_P [um/kN]",
-            "cone [um/kN]",
-            "Phi",
-            "of proof [%]",
-            "seat [MPa]",
-            "limit [MPa]",
-            "embedding [um]",
-            "loss [kN]",
-            "VDI f_Z [um]",
-            "loss [kN]",
-        ]
-    ]
-    depth = np.nansum(b.embedding, axis=2)
-    for i, load in enumerate(result.loads):
-        for k, name in enumerate(result.bolts):
-            lost = b.embedding_loss[:, i, k]
-            known = np.isfinite(b.embedding[0, i, :, k]).any()
-            rows.append(
-                [
-                    load_text(load) if k == 0 else "",
-                    name,
-                    f"{result.bolt_forces[i, k] / 1e3:.3f}",
-                    *(
-                        _or_dash(1e9 * value, ".3g")
-                        for value in (b.compliance[i, k], b.member_compliance[i, k], b.cone_compliance[k])
-                    ),
-                    _or_dash(b.load_factor[i, k], ".3f"),
-                    _or_dash(100 * b.proof_share[i, k], ".0f"),
-                    _or_dash(1e-6 * b.seat_pressure[i, k], ".3g"),
-                    _or_dash(1e-6 * b.seat_limit[k], ".3g"),
-                    _bounded(1e6 * depth[:, i, k]) if known else "-",
-                    _bounded(1e-3 * lost),
-                    _or_dash(1e6 * b.embedding_guide[k], ".3g"),
-                    _or_dash(1e-3 * b.embedding_guide_loss[i, k], ".2g"),
-                ]
-            )
-    return _without_empty(rows)
+    shape = result.bolt_forces.shape
+    depth = np.where(np.isfinite(b.embedding[0]).any(axis=1), np.nansum(b.embedding, axis=2), np.nan)
+
+    def of_all(values: Any) -> Array:
+        return np.broadcast_to(values, shape).ravel()
+
+    def bounded(bounds: Array) -> list[str]:
+        return [_bounded(pair) for pair in bounds.reshape(2, -1).T]
+
+    rows = in_columns(
+        ("preload", [load_text(load) if k == 0 else "" for load in result.loads for k in range(shape[1])], ""),
+        ("bolt", [*result.bolts] * shape[0], ""),
+        ("force [kN]", of_all(result.bolt_forces / 1e3), ".3f"),
+        ("delta_S [um/kN]", of_all(1e9 * b.compliance), ".3g"),
+        ("delta_P [um/kN]", of_all(1e9 * b.member_compliance), ".3g"),
+        ("cone [um/kN]", of_all(1e9 * b.cone_compliance), ".3g"),
+        ("Phi", of_all(b.load_factor), ".3f"),
+        ("of proof [%]", of_all(100 * b.proof_share), ".0f"),
+        ("seat [MPa]", of_all(1e-6 * b.seat_pressure), ".3g"),
+        ("limit [MPa]", of_all(1e-6 * b.seat_limit), ".3g"),
+        ("embedding [um]", bounded(1e6 * depth), ""),
+        ("loss [kN]", bounded(1e-3 * b.embedding_loss), ""),
+        ("VDI f_Z [um]", of_all(1e6 * b.embedding_guide), ".3g"),
+        ("loss [kN]", of_all(1e-3 * b.embedding_guide_loss), ".2g"),
+    )
+    # without the columns that have nothing but dashes
+    keep = [k for k in range(len(rows[0])) if k < 2 or any(row[k] != "-" for row in rows[1:])]
+    return [[row[k] for k in keep] for row in rows]
 
 
 def bolting_head(result: Result) -> str:
@@ -310,12 +295,6 @@ def bolting_head(result: Result) -> str:
         "bolts and what they clamp"
         + " (no law here has a loading curve of its own: no embedding is predicted)" * silent
     )
-
-
-def _without_empty(rows: Rows) -> Rows:
-    """The columns in which any row has more than a dash."""
-    keep = [k for k in range(len(rows[0])) if k < 2 or any(row[k] != "-" for row in rows[1:])]
-    return [[row[k] for k in keep] for row in rows]
 
 
 def modal_forces(result: Result) -> Rows:
@@ -391,47 +370,40 @@ def fractals(result: Result) -> Rows:
 
 def backbone(curve: Backbone) -> Rows:
     """One row per amplitude, the static cycle beside the amplitudes that it was computed at."""
-    rows: Rows = [["a [m/s2]", "f [Hz]", "damping [%]", "slips", "opens", "loss [J]", "static cycle: df, d damping"]]
-    beside = {} if curve.witness is None else dict(enumerate(curve.witness.acceleration))
-    for k, level in enumerate(curve.acceleration):
-        found = [i for i, at in beside.items() if abs(at / level - 1) < 1e-9]
-        cell = ""
-        if found and curve.witness is not None:
-            one = curve.witness
-            cell = f"{one.frequency_change[found[0]]:+.2%}, {_or_dash(one.damping_change[found[0]], '+.1%')}"
-        rows.append(
-            [
-                f"{level:.4g}",
-                f"{curve.frequency[k]:.3f}",
-                f"{100 * curve.damping[k]:.3g}",
-                f"{curve.slipping[k]:.1%}",
-                f"{curve.open[k]:.1%}",
-                f"{curve.energy[k].sum():.3g}",
-                cell,
-            ]
-        )
-    return rows
+    return in_columns(
+        ("a [m/s2]", curve.acceleration, ".4g"),
+        ("f [Hz]", curve.frequency, ".3f"),
+        ("damping [%]", 100 * curve.damping, ".3g"),
+        ("slips", curve.slipping, ".1%"),
+        ("opens", curve.open, ".1%"),
+        ("loss [J]", curve.energy.sum(axis=1), ".3g"),
+        ("static cycle: df, d damping", [_static_cycle(curve, level) for level in curve.acceleration], ""),
+    )
+
+
+def _static_cycle(curve: Backbone, level: float) -> str:
+    """How far the static cycle at an amplitude is from the curve; empty where there is none."""
+    found = curve.witness
+    if found is None or not (here := np.abs(found.acceleration / level - 1) < 1e-9).any():
+        return ""
+    return f"{found.frequency_change[here][0]:+.2%}, {_or_dash(found.damping_change[here][0], '+.1%')}"
 
 
 def backbone_measured(curve: Backbone) -> Rows:
     """Measured points beside the curve at the same amplitude, a dozen at most over their range."""
-    frequency, damping = curve.at_measured()
-    rows: Rows = [["a [m/s2]", "measured [Hz]", "curve [Hz]", "difference", "measured [%]", "curve [%]", "ratio"]]
     order = np.argsort(curve.measured_acceleration)
-    for k in order[np.unique(np.linspace(0, len(order) - 1, min(len(order), MOST_MEASURED)).round().astype(int))]:
-        measured = curve.measured_frequency[k], curve.measured_damping[k]
-        rows.append(
-            [
-                f"{curve.measured_acceleration[k]:.4g}",
-                f"{measured[0]:.3f}",
-                _or_dash(frequency[k], ".3f"),
-                _or_dash(frequency[k] / measured[0] - 1, "+.2%"),
-                _or_dash(100 * measured[1], ".3g"),
-                _or_dash(100 * damping[k], ".3g"),
-                _or_dash(damping[k] / measured[1], ".2f"),
-            ]
-        )
-    return rows
+    shown = order[np.unique(np.linspace(0, len(order) - 1, min(len(order), MOST_MEASURED)).round().astype(int))]
+    f, z = (values[shown] for values in curve.at_measured())
+    measured_f, measured_z = curve.measured_frequency[shown], curve.measured_damping[shown]
+    return in_columns(
+        ("a [m/s2]", curve.measured_acceleration[shown], ".4g"),
+        ("measured [Hz]", measured_f, ".3f"),
+        ("curve [Hz]", f, ".3f"),
+        ("difference", f / measured_f - 1, "+.2%"),
+        ("measured [%]", 100 * measured_z, ".3g"),
+        ("curve [%]", 100 * z, ".3g"),
+        ("ratio", z / measured_z, ".2f"),
+    )
 
 
 def measured_backbone(points: MeasuredBackbone) -> Rows:

@@ -33,6 +33,11 @@ def joint_stiffness(relative: Any, springs: Array) -> Array:
     return np.asarray((rooted.T @ rooted).astype(float))  # NumPy sees that both are one, and does half of it
 
 
+def per_point(weights: Array, k_n: Array, k_t: Array) -> Array:
+    """Springs (q, 3) [N/m], normal and both tangential, of areas [m2] with stiffness per area [Pa/m] (q,)."""
+    return np.asarray(weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Groups:
     """Groups of the q points of one joint, g of them.

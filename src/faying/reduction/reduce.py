@@ -330,7 +330,7 @@ class Reduction:
 
     def modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Any, vectors: Any) -> Any:
         """What complex eigenvalues (m,) and vectors (d, m) of a variant leave of the equations of motion (n, m)."""
-        lossy = any(np.any(d.loss_n) or np.any(d.loss_t) for d in springs)
+        lossy = any(d.lossy for d in springs)
         if not lossy:
             values, vectors = values.real, vectors.real
         parts = np.concatenate(real_parts(vectors), axis=1) if lossy else vectors

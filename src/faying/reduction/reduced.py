@@ -15,7 +15,7 @@ from faying.joint.equilibrium import Equilibrium, PreloadState, Steps, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
 from faying.numerics.damped import lowest_complex
-from faying.reduction.groups import Groups, joint_stiffness
+from faying.reduction.groups import Groups, joint_stiffness, per_point
 from faying.reduction.part_shares import ReducedShares, Scales
 from faying.reduction.secant import Secants, evenly_pressed
 from faying.typing import Array, Complex
@@ -64,7 +64,7 @@ class ReducedMotion:
 
     def springs(self, k_n: Array, k_t: Array) -> Array:
         """Stiffness (m, m) [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
-        return joint_stiffness(self.relative, self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+        return joint_stiffness(self.relative, per_point(self.weights, k_n, k_t))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +112,7 @@ def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT)
 
 def _of_springs(springs: Springs["ReducedMotion"], moved: Any, k_n: Array, k_t: Array) -> Array:
     """Stiffness (m, m) of springs per area k_n, k_t [Pa/m] of a joint on the motion (3q, m) of its points."""
-    return joint_stiffness(moved, springs.interface.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+    return joint_stiffness(moved, per_point(springs.interface.weights, k_n, k_t))
 
 
 class ReducedEquilibrium(Equilibrium):
@@ -313,7 +313,7 @@ class ReducedModel:
         cut = slice(0, self.coarse)
         rough = eigh(K[cut, cut], M[cut, cut], eigvals_only=True, subset_by_index=[0, self.count - 1])
         estimate = np.abs(rough / real[: self.count] - 1) / 2
-        if not any(np.any(s.loss_n) or np.any(s.loss_t) for s in springs):
+        if not any(s.lossy for s in springs):
             return real[: self.count].astype(complex), shapes[:, : self.count].astype(complex), estimate
         loss = sum(s.loss() for s in springs)
         values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count, slight)
@@ -331,17 +331,11 @@ class ReducedModel:
     def _spanned(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
         """`modes` in the span of those by groups' seven digits, which are kept but for the energy of the parts."""
         turn, K = self._normal
-        lossy = any(np.any(s.loss_n) or np.any(s.loss_t) for s in springs)
+        lossy = any(s.lossy for s in springs)
         rough, wanted = K, min(self.count + (BLOCK if lossy else SPAN), len(K))
-        for s in springs:
-            groups = s.interface.groups
-            if groups is None:
-                rough = rough + turn.T @ s.stiffness() @ turn
-            else:
-                w = s.interface.weights[:, None]
-                rough = (
-                    rough + turn.T @ joint_stiffness(groups.light, w * np.stack([s.k_n, s.k_t, s.k_t], axis=1)) @ turn
-                )
+        seen = [s.interface.relative if s.interface.groups is None else s.interface.groups.light for s in springs]
+        for s, motion in zip(springs, seen, strict=True):
+            rough = rough + turn.T @ _of_springs(s, motion, s.k_n, s.k_t) @ turn
         near, shapes = (found[..., :wanted] for found in np.linalg.eigh(rough))  # sooner than a part of them
         # the leading vectors of the basis are those of the first columns of `turn`, which is triangular
         cut = slice(0, self.coarse)
@@ -349,9 +343,8 @@ class ReducedModel:
         estimate = np.abs(coarser[: self.count] / near[: self.count] - 1) / 2
         small, loss = shapes.T @ K @ shapes, np.zeros((wanted, wanted))
         span = turn @ shapes
-        for s in springs:
-            seen = s.interface.relative if s.interface.groups is None else s.interface.groups.light
-            moved = seen @ span.astype(seen.dtype)
+        for s, motion in zip(springs, seen, strict=True):
+            moved = motion @ span.astype(motion.dtype)
             small = small + _of_springs(s, moved, s.k_n, s.k_t)
             if lossy:
                 loss = loss + _of_springs(s, moved, s.k_n * s.loss_n, s.k_t * s.loss_t)

@@ -10,7 +10,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.joint.equilibrium import PreloadState, StickSlip
 from faying.joint.joint_law import JointLaw
-from faying.reduction.groups import joint_stiffness
+from faying.reduction.groups import joint_stiffness, per_point
 from faying.typing import Array
 
 STEPS = 30  # after which Newton is asked
@@ -161,13 +161,10 @@ class Secants:
         """
         tangents = []
         for (motion, _), springs in zip(self.joints, self._springs(here), strict=True):
-            groups = motion.groups
-            rougher = rough and groups is not None
-            tangents.append(
-                joint_stiffness(groups.light_mean, groups.sums(springs))
-                if rougher
-                else joint_stiffness(motion.quick, springs)
-            )
+            if rough and motion.groups is not None:
+                tangents.append(joint_stiffness(motion.groups.light_mean, motion.groups.sums(springs)))
+            else:
+                tangents.append(joint_stiffness(motion.quick, springs))
         return _answer(self.stiffness, tangents)
 
     def _springs(self, here: _There) -> list[Array]:
@@ -175,7 +172,7 @@ class Secants:
         found = []
         for (motion, _), move, k_n, slip_state in zip(self.joints, here.moves, here.k_n, here.slip_states, strict=True):
             k_t = np.where(slip_state.sliding(move[:, 1:]), 0.0, slip_state.k_t)
-            found.append(motion.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
+            found.append(per_point(motion.weights, k_n, k_t))
         return found
 
     def _state(self, u: Array, here: _There, size: float, steps: int) -> PreloadState:

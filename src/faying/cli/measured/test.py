@@ -9,7 +9,7 @@ import click
 from faying import units
 from faying.cli.options import FILE, PATH, frequency_band
 from faying.errors import InputError
-from faying.text import json_text
+from faying.text import in_columns, json_text
 
 TEXT = (".txt", ".csv", ".dat", ".asc")
 
@@ -115,19 +115,14 @@ def read_frf(
 def table(found: Any) -> str:
     """Format the modes for the terminal."""
     modes = found.modes
-    rows = [["mode", "frequency [Hz]", "95 % interval", "loss factor", "95 % interval", "orders"]]
-    for k in range(len(modes.frequencies)):
-        f, z = modes.frequency_interval[k], modes.loss_interval[k]
-        rows.append(
-            [
-                str(k + 1),
-                f"{modes.frequencies[k]:.2f}",
-                f"{f[0]:.3f} .. {f[1]:.3f}",
-                f"{modes.loss_factors[k]:.2e}",
-                f"{z[0]:.1e} .. {z[1]:.1e}",
-                f"{modes.found_in[k]} of {found.rule.highest_order}",
-            ]
-        )
+    rows = in_columns(
+        ("mode", range(1, len(modes.frequencies) + 1), ""),
+        ("frequency [Hz]", modes.frequencies, ".2f"),
+        ("95 % interval", [f"{low:.3f} .. {high:.3f}" for low, high in modes.frequency_interval], ""),
+        ("loss factor", modes.loss_factors, ".2e"),
+        ("95 % interval", [f"{low:.1e} .. {high:.1e}" for low, high in modes.loss_interval], ""),
+        ("orders", [f"{count} of {found.rule.highest_order}" for count in modes.found_in], ""),
+    )
     widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
     lines = ["  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows]
     lines += ["", f"the modes leave {found.misfit:.1%} of the FRFs (rms) unexplained"]
