@@ -23,7 +23,7 @@ from faying.loads.contact import LoadedContact
 from faying.loads.load import Load, in_order
 from faying.loads.remarks import load_notes
 from faying.loads.statics import LoadedState, LoadStatics
-from faying.measured.mac import Weighted
+from faying.measured.mac import Weighted, partners
 from faying.notes import Note
 from faying.numerics.changed import UpdatedStiffness
 from faying.numerics.shifted import Shifted
@@ -276,8 +276,6 @@ def _modes(
     """Frequencies about each loaded state, each paired with the mode at rest that it is most like."""
     if base.rest is None:
         return {}
-    from scipy.optimize import linear_sum_assignment
-
     rest, shapes = base.rest
     mass = base.structure.dynamic_matrices[1]
     before = Weighted.of(shapes, mass)
@@ -285,9 +283,8 @@ def _modes(
     for load, pressure in zip(loads, pressures, strict=True):
         progress.begin(f"modes under {load.name}")
         here, moved = base.modes(base.structure.springs(list(pressure)))
-        table = before.mac(Weighted.of(moved, mass))  # rows: modes under the load
-        rows, columns = linear_sum_assignment(table.T, maximize=True)
-        order = columns[np.argsort(rows)]
+        table = before.mac(Weighted.of(moved, mass)).T  # columns: modes under the load
+        order = partners(table)
         frequencies.append(here[order])
-        alike.append(table.T[np.arange(len(order)), order])
+        alike.append(table[np.arange(len(order)), order])
     return {"rest_frequency": rest, "frequency": np.array(frequencies), "likeness": np.array(alike)}

@@ -77,7 +77,11 @@ def _step() -> dict[str, str]:
 
 
 def _instruments() -> dict[str, str]:
-    return _package("SurfaceTopography", "files of most profilometers are read", "instruments")
+    from importlib.util import find_spec
+
+    if find_spec("SurfaceTopography") is None:
+        return finding("SurfaceTopography is not installed", "optional", "add --extra instruments to uv run")
+    return finding("files of most profilometers are read")
 
 
 def _mpi() -> dict[str, str]:
@@ -86,14 +90,6 @@ def _mpi() -> dict[str, str]:
     if which("mpiexec") is None:
         return finding("no mpiexec on the path", "optional", "only --mpi needs it, with petsc4py and slepc4py")
     return finding(str(which("mpiexec")))
-
-
-def _package(name: str, says: str, extra: str) -> dict[str, str]:
-    from importlib.util import find_spec
-
-    if find_spec(name) is None:
-        return finding(f"{name} is not installed", "optional", f"add --extra {extra} to uv run")
-    return finding(says)
 
 
 def _browser() -> dict[str, str]:

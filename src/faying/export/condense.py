@@ -15,7 +15,7 @@ from faying.export.condensed import CondensedJoint, condensed_modes
 from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.support_check import check_motions
-from faying.measured.mac import mac
+from faying.measured.mac import mac, partners
 from faying.progress import Report
 from faying.result.fields import listed
 from faying.study.study import Study
@@ -168,7 +168,7 @@ def condense(
         """Frequencies and loss factors of these modes with the joint condensed; NaN where none is like them."""
         progress.begin(f"modes with {tie} ties")
         other = condensed_modes(structure, springs, number, elastic.stop + COUNTED, tie=tie, solver=study.modes.solver)
-        at = _partners(shapes, other.shapes, structure.dynamic_matrices[1])
+        at = partners(mac(shapes.T, other.shapes.T, structure.dynamic_matrices[1]), LIKE)
         found, loss = (np.where(at < 0, np.nan, values[at]) for values in (other.frequencies, other.loss_factors))
         return found, loss
 
@@ -196,15 +196,3 @@ def _joint(study: Study, name: str | None) -> int:
     if name is not None and name not in names:
         raise InputError(f"no joint {name!r}; the study has {', '.join(map(repr, names))}")
     return 0 if name is None else names.index(name)
-
-
-def _partners(shapes: Array, others: Array, mass: Any) -> Array:
-    """For each shape (unknowns, m) the like one among others, as an index; -1 where none is."""
-    from scipy.optimize import linear_sum_assignment
-
-    like = mac(shapes.T, others.T, mass)
-    rows, columns = linear_sum_assignment(-like)
-    out = np.full(shapes.shape[1], -1)
-    good = like[rows, columns] >= LIKE
-    out[rows[good]] = columns[good]
-    return out

@@ -8,6 +8,7 @@ import numpy as np
 
 from faying.measured.ring_down import MeasuredBackbone
 from faying.notes import Note
+from faying.result.backbone import measured_of
 from faying.result.fields import Recorded, listed, variable
 from faying.typing import Array, Index
 
@@ -44,11 +45,7 @@ class Backbones(Recorded):
     @property
     def measured(self) -> MeasuredBackbone | None:
         """The measured points that the study names, None without."""
-        if not len(self.measured_acceleration):
-            return None
-        return MeasuredBackbone.of_points(
-            self.measured_acceleration, self.measured_frequency, self.measured_damping, source=self.measured_source
-        )
+        return measured_of(self)
 
     @property
     def reached(self) -> Index:

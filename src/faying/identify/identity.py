@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.measured.mac import mac
+from faying.measured.mac import mac, partners
 from faying.measured.pairing import FARTHEST
 from faying.sweeps.parallel import Rows
 from faying.typing import Array, Index
@@ -25,16 +25,8 @@ def named(reference: Sequence[Any], shapes: Sequence[Any], mass: Array) -> Index
 
     reference, shapes: of the modes of the median and of the sample at each load (d, m); mass: in the basis (d, d).
     """
-    from scipy.optimize import linear_sum_assignment
-
-    out = []
-    for old, new in zip(reference, shapes, strict=True):
-        alike = mac(old.T, new.T, mass)
-        rows, columns = linear_sum_assignment(alike, maximize=True)
-        found = np.full(len(alike), -1)
-        found[rows] = np.where(alike[rows, columns] >= LIKE, columns, -1)
-        out.append(found)
-    return np.array(out, dtype=np.int64)
+    pairs = zip(reference, shapes, strict=True)
+    return np.array([partners(mac(old.T, new.T, mass), LIKE) for old, new in pairs], dtype=np.int64)
 
 
 def by_name(values: Array, names: Index) -> Array:

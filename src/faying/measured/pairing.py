@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
+from faying.measured.mac import partners
 from faying.typing import Array, Index
 
 NEAR = 0.05  # relative difference in frequency that costs 1
@@ -21,15 +22,10 @@ def follow(macs: Sequence[Any]) -> Index:
     macs: MAC (m, m) of the modes at each load with those at the next; of all one-to-one successions the one with the
     greatest sum is taken.
     """
-    from scipy.optimize import linear_sum_assignment
-
     count = len(macs[0]) if len(macs) else 0
     tracks = [np.arange(count)]
     for table in macs:
-        rows, columns = linear_sum_assignment(table, maximize=True)
-        successor = np.empty(count, dtype=np.int64)
-        successor[rows] = columns
-        tracks.append(successor[tracks[-1]])
+        tracks.append(partners(table)[tracks[-1]])
     return np.array(tracks, dtype=np.int64)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from faying.case.scatter import SCATTER
-from faying.output.table import Rows
+from faying.output.table import Rows, by_mode, damping_at
 from faying.result import Result
 from faying.result.interval import Interval
 from faying.result.result import preload_slope
@@ -45,9 +45,14 @@ def lead(result: Result) -> str:
         ends = _interval(float(result.interval_low[-1, 0]), float(result.interval_high[-1, 0])).replace("..", "and")
         words.append(f"The first is between {ends} Hz (5 to 95 %).")
     found = Score.of(result)
-    if found is not None and found.inside is not None:
-        words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies are within 5 to 95 %.")
-    return " ".join(words)
+    return " ".join([*words, *_inside(found)])
+
+
+def _inside(found: Score | None) -> list[str]:
+    """How many of the measured frequencies lie in their intervals; empty where that is not known."""
+    if found is None or found.inside is None:
+        return []
+    return [f"{int(found.inside.sum())} of {found.measured} measured frequencies are within 5 to 95 %."]
 
 
 def _hertz(f: float) -> str:
@@ -63,9 +68,7 @@ def _interval(low: float, high: float) -> str:
 def _damping(result: Result, mode: int) -> list[str]:
     if result.levels is None or result.level_low is None or result.level_high is None or result.level_damping is None:
         return []
-    k = len(result.levels) // 2
-    ends = (result.level_low[-1, k, mode], result.level_damping[-1, k, mode], result.level_high[-1, k, mode])
-    return [" .. ".join(f"{100 * one:.2g}" for one in ends)]
+    return [damping_at(result, len(result.levels) // 2, mode)]
 
 
 def moves(result: Result, mode: int) -> str:
@@ -100,11 +103,9 @@ def shares(result: Result) -> Rows:
     interval = result.interval
     if interval is None:
         return []
-    rows: Rows = [["mode", "width", *interval.sources]]
-    for j, width in enumerate(interval.width[-1]):
-        cells = [f"{100 * share:.0f}" for share in interval.shares[:, -1, j]]
-        rows.append([str(j + 1), f"{100 * width:.2g}", *cells])
-    return rows
+    columns = zip(interval.width[-1], *interval.shares[:, -1], strict=True)
+    cells = ([f"{100 * width:.2g}", *(f"{100 * share:.0f}" for share in shares)] for width, *shares in columns)
+    return by_mode(["width", *interval.sources], cells)
 
 
 def narrowing(result: Result) -> Rows:
@@ -119,15 +120,9 @@ def narrowing(result: Result) -> Rows:
     found: list[tuple[float, list[str]]] = []
     for name, less in gains(interval).items():
         best = int(np.argmax(less))
-        if less[best] < LEAST_GAIN:
-            continue
-        cells = [
-            name,
-            SCATTER[name].remedy,
-            f"{100 * float(np.median(less)):.0f}",
-            f"{100 * less[best]:.0f} (mode {best + 1})",
-        ]
-        found.append((float(np.mean(less)), cells))
+        if less[best] >= LEAST_GAIN:
+            cells = [f"{100 * float(np.median(less)):.0f}", f"{100 * less[best]:.0f} (mode {best + 1})"]
+            found.append((float(np.mean(less)), [name, SCATTER[name].remedy, *cells]))
     found.sort(key=lambda one: -one[0])
     return [["not known", "what would narrow it", "median [%]", "most [%]"], *(cells for _, cells in found)]
 
@@ -148,9 +143,7 @@ def score_line(result: Result) -> str:
     found = Score.of(result)
     if found is None:
         return ""
-    words = []
-    if found.inside is not None:
-        words.append(f"{int(found.inside.sum())} of {found.measured} measured frequencies are within 5 to 95 %.")
+    words = _inside(found)
     if np.isfinite(found.gain):
         helps = "helps" if found.gain < 1 else "does not help"
         words.append(

@@ -6,7 +6,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.identify.prediction import LEVELS, Prediction
-from faying.output.table import Rows
+from faying.output.table import Rows, by_mode
 from faying.output.table import text as aligned
 from faying.units import in_mm, load_text
 
@@ -29,11 +29,8 @@ def scatter(found: Prediction) -> Rows:
 
 def intervals(found: Prediction) -> Rows:
     """One row per mode: 5 % .. median .. 95 % of the frequency at each preload."""
-    q = found.quantiles(LEVELS).frequencies
-    rows: Rows = [["mode", *(f"{load_text(load)} [Hz]" for load in found.loads)]]
-    for mode in range(q.shape[2]):
-        rows.append([str(mode + 1), *(_three(q[:, load, mode]) for load in range(q.shape[1]))])
-    return rows
+    q = found.quantiles(LEVELS).frequencies.T  # mode, load, level
+    return by_mode((f"{load_text(load)} [Hz]" for load in found.loads), (map(_three, mode) for mode in q))
 
 
 def slopes(found: Prediction) -> Rows:
@@ -41,7 +38,7 @@ def slopes(found: Prediction) -> Rows:
     if len(found.loads) < 2:
         return []
     q = 1e3 * found.quantiles(LEVELS).slopes
-    return [["mode", "[Hz/kN]"], *([str(k + 1), " .. ".join(f"{v:.3g}" for v in q[:, k])] for k in range(q.shape[1]))]
+    return by_mode(["[Hz/kN]"], ([" .. ".join(f"{value:.3g}" for value in mode)] for mode in q.T))
 
 
 def losses(found: Prediction) -> Rows:
@@ -49,11 +46,8 @@ def losses(found: Prediction) -> Rows:
     q = found.quantiles(LEVELS).loss_factors
     if not np.isfinite(q).any():
         return []
-    rows: Rows = [["mode", *(f"{load_text(load)} (loss)" for load in found.loads)]]
-    for mode in range(q.shape[2]):
-        cells = [" .. ".join(f"{v:.1e}" for v in q[:, load, mode]) for load in range(q.shape[1])]
-        rows.append([str(mode + 1), *cells])
-    return rows
+    heads = (f"{load_text(load)} (loss)" for load in found.loads)
+    return by_mode(heads, ([" .. ".join(f"{value:.1e}" for value in load) for load in mode] for mode in q.T))
 
 
 def backbones(found: Prediction) -> Rows:

@@ -1,6 +1,6 @@
 """The tables of a result as plain text, for terminals, and as rows, for the report."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from itertools import product
 from math import floor, log10
 from typing import Any
@@ -25,6 +25,11 @@ LEAST_CHANGE = 5e-4  # per cent that three digits show
 SAME = 1e-4  # relative difference of two frequencies that is not shown
 
 
+def by_mode(heads: Iterable[str], cells: Iterable[Iterable[str]]) -> Rows:
+    """One row per mode, counted from 1."""
+    return [["mode", *heads], *([str(number), *row] for number, row in enumerate(cells, start=1))]
+
+
 def modes(result: Result) -> Rows:
     """One row per mode: free, then each preload with its loss factor where one is predicted, then bonded."""
     lost = bool(np.isfinite(result.loss_factors).any())
@@ -46,11 +51,9 @@ def ranges(result: Result) -> Rows:
     """
     if result.low is None or result.high is None:
         return []
-    rows: Rows = [["mode", *(f"{load_text(load)} [Hz]" for load in result.loads)]]
-    for j in range(len(result.bonded)):
-        pairs = zip(result.low[:, j], result.high[:, j], strict=True)
-        rows.append([str(j + 1), *(f"{_five(low)} .. {_five(high)}" for low, high in pairs)])
-    return rows
+    heads = [f"{load_text(load)} [Hz]" for load in result.loads]
+    ends = zip(result.low.T, result.high.T, strict=True)
+    return by_mode(heads, ([f"{_five(a)} .. {_five(b)}" for a, b in zip(*pair, strict=True)] for pair in ends))
 
 
 def damping(result: Result) -> Rows:
@@ -58,13 +61,20 @@ def damping(result: Result) -> Rows:
     if result.levels is None or result.level_damping is None or result.level_low is None or result.level_high is None:
         return []
     assert result.level_frequencies is not None
-    rows: Rows = [["mode", *(f"{level:g} m/s2 [%]" for level in result.levels), "change of f [%]"]]
-    ends = (result.level_low[-1], result.level_damping[-1], result.level_high[-1])
+    heads = [*(f"{level:g} m/s2 [%]" for level in result.levels), "change of f [%]"]
     change = 100 * (result.level_frequencies[-1, -1] / result.frequencies[-1] - 1)
-    for j in range(len(result.bonded)):
-        cells = [" .. ".join(f"{100 * one[k, j]:.2g}" for one in ends) for k in range(len(result.levels))]
-        rows.append([str(j + 1), *cells, f"{change[j]:+.3f}" if abs(change[j]) >= LEAST_CHANGE else "0"])
-    return rows
+    words = [f"{one:+.3f}" if abs(one) >= LEAST_CHANGE else "0" for one in change]
+    levels = range(len(result.levels))
+    return by_mode(heads, ([*(damping_at(result, k, j) for k in levels), word] for j, word in enumerate(words)))
+
+
+def damping_at(result: Result, level: int, mode: int) -> str:
+    """Low, median and high damping ratio [%] of a mode at one level, at the greatest preload."""
+    assert result.level_low is not None
+    assert result.level_damping is not None
+    assert result.level_high is not None
+    ends = (result.level_low, result.level_damping, result.level_high)
+    return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in ends)
 
 
 def _five(value: float) -> str:
@@ -132,12 +142,11 @@ def waves(result: Result) -> Rows:
     if result.wave_frequencies is None:
         return []
     heads = [f"{load_text(load)} [Hz]" for load in result.loads]
-    rows: Rows = [["mode", *heads, *(["d f/d preload [Hz/kN]"] if result.wave_slopes is not None else [])]]
-    for j in range(result.wave_frequencies.shape[2]):
-        cells = [_over_draws(values, ".2f") for values in result.wave_frequencies[:, :, j].T]
-        cells += [] if result.wave_slopes is None else [_over_draws(1e3 * result.wave_slopes[:, j], "+.3f")]
-        rows.append([str(j + 1), *cells])
-    return rows
+    cells = [[_over_draws(values, ".2f") for values in mode.T] for mode in np.moveaxis(result.wave_frequencies, 2, 0)]
+    if result.wave_slopes is not None:
+        heads.append("d f/d preload [Hz/kN]")
+        cells = [[*row, _over_draws(1e3 * s, "+.3f")] for row, s in zip(cells, result.wave_slopes.T, strict=True)]
+    return by_mode(heads, cells)
 
 
 def _over_draws(values: Array, form: str) -> str:

@@ -81,6 +81,15 @@ class RingDown:
     damping: Array
 
 
+def measured_of(curve: Any) -> MeasuredBackbone | None:
+    """The measured points that a curve, or curves of samples, are compared with; None without."""
+    if not len(curve.measured_acceleration):
+        return None
+    return MeasuredBackbone.of_points(
+        curve.measured_acceleration, curve.measured_frequency, curve.measured_damping, source=curve.measured_source
+    )
+
+
 @checked_call
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Backbone(Recorded):
@@ -184,11 +193,7 @@ class Backbone(Recorded):
     @property
     def measured(self) -> MeasuredBackbone | None:
         """The measured points that the study names, None without."""
-        if not len(self.measured_acceleration):
-            return None
-        return MeasuredBackbone.of_points(
-            self.measured_acceleration, self.measured_frequency, self.measured_damping, source=self.measured_source
-        )
+        return measured_of(self)
 
     def at_measured(self) -> tuple[Array, Array]:
         """Frequency [Hz] and damping ratio [-] of the curve at the measured accelerations, NaN beyond its end."""

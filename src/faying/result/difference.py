@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.joint.preload_case import preload_index
-from faying.measured.mac import mac
+from faying.measured.mac import mac, partners
 from faying.misuse import checked_call
 from faying.result.result import Result
 from faying.style import Summary
@@ -243,7 +243,6 @@ def _areas(result: Result) -> Array:
 
 def _paired(first: Result, second: Result, loads: tuple[int, int]) -> tuple[Index, Array, str]:
     """Pairs of modes, their MAC, and why they are paired by number where they are."""
-    from scipy.optimize import linear_sum_assignment
     from scipy.spatial import KDTree
 
     distance, near = KDTree(second.outline).query(first.outline, k=NEIGHBOURS)
@@ -261,7 +260,6 @@ def _paired(first: Result, second: Result, loads: tuple[int, int]) -> tuple[Inde
     roots = np.sqrt(_areas(first))[:, None]  # a fine mesh counts no more than a coarse one
     flat = [(one * roots).reshape(len(one), -1) for one in (shapes[0], there)]
     table = mac(*flat)
-    rows, columns = linear_sum_assignment(table, maximize=True)
-    alike = table[rows, columns]
-    fits = alike >= ALIKE
-    return np.stack([rows, columns], axis=1)[fits], alike[fits], ""
+    columns = partners(table, ALIKE)
+    rows = np.flatnonzero(columns >= 0)
+    return np.stack([rows, columns[rows]], axis=1), table[rows, columns[rows]], ""

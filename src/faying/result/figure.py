@@ -100,20 +100,25 @@ def _faces(result: Result, field: str) -> Any:
 @drawing
 def frequencies(result: Result) -> Any:
     """Return a figure of every mode's frequency against preload, with its band and the test."""
-    count = len(result.bonded)
+    fig, axes = mode_panels(len(result.bonded), sharex=True)
+    for mode, ax in enumerate(axes):
+        _against_preload(ax, result, mode)
+    fig.supxlabel("preload of each bolt [kN]")
+    fig.supylabel("frequency [Hz]")
+    shared_legend(fig, axes)
+    return fig
+
+
+def mode_panels(count: int, **shared: bool) -> tuple[Any, list[Any]]:
+    """A figure of one small axes for each mode, four in a row; shared: sharex and sharey of `subplots`."""
     columns = min(4, count)
     rows = -(-count // columns)
     fig = new_figure(WIDE, min(0.7 + 1.45 * rows, 0.7 + TALLEST))
-    axes = fig.subplots(rows, columns, squeeze=False, sharex=True)
-    for ax in axes.flat[count:]:
-        ax.set_visible(False)
-    for mode in range(count):
-        _against_preload(axes.flat[mode], result, mode)
-        axes.flat[mode].tick_params(labelbottom=mode + columns >= count)
-    fig.supxlabel("preload of each bolt [kN]")
-    fig.supylabel("frequency [Hz]")
-    shared_legend(fig, axes.flat[:count])
-    return fig
+    axes = list(fig.subplots(rows, columns, squeeze=False, **shared).flat)
+    for number, ax in enumerate(axes):
+        ax.set_visible(number < count)
+        ax.tick_params(labelbottom=number + columns >= count)
+    return fig, axes[:count]
 
 
 @drawing
@@ -135,10 +140,10 @@ def _against_preload(ax: Any, result: Result, mode: int) -> None:
     load, f = result.loads * 1e-3, result.frequencies[:, mode]
     if result.interval_low is not None and result.interval_high is not None:
         ends = result.interval_low[:, mode], result.interval_high[:, mode]
-        _band(ax, load, *ends, label="5 to 95 %")
+        band(ax, load, *ends, label="5 to 95 %")
     elif result.low is not None and result.high is not None:
         ends = result.low[:, mode], result.high[:, mode]
-        _band(ax, load, *ends, label="range of the law")
+        band(ax, load, *ends, label="range of the law")
     else:
         ends = f, f
     ax.plot(load, f, "o-" if len(load) > 1 else "D", color=COLOURS[0], ms=3, label="computed")
@@ -160,12 +165,12 @@ def _against_preload(ax: Any, result: Result, mode: int) -> None:
     ax.locator_params(axis="y", nbins=4)
 
 
-def _band(ax: Any, load: Any, low: Any, high: Any, *, label: str) -> None:
-    """The band between two frequencies (load,), as a bar where there is one load."""
-    if len(load) > 1:
-        ax.fill_between(load, low, high, color=COLOURS[0], alpha=0.18, lw=0, label=label)
+def band(ax: Any, x: Any, low: Any, high: Any, *, label: str) -> None:
+    """The band between two values at each place (x,), as a bar where there is one place."""
+    if len(x) > 1:
+        ax.fill_between(x, low, high, color=COLOURS[0], alpha=0.18, lw=0, label=label)
     else:
-        ax.vlines(load, low, high, color=COLOURS[0], alpha=0.35, lw=6, label=label)
+        ax.vlines(x, low, high, color=COLOURS[0], alpha=0.35, lw=6, label=label)
 
 
 @drawing

@@ -5,8 +5,9 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
+from faying.result.figure import band, mode_panels
 from faying.result.result import Result
-from faying.style import COLOURS, TALLEST, WIDE, colour, drawing, new_figure, plain_numbers, shared_legend
+from faying.style import COLOURS, colour, drawing, plain_numbers, shared_legend
 from faying.units import load_text
 
 
@@ -18,20 +19,13 @@ def damping_levels(result: Result, load: int = -1) -> Any:
     """
     if result.levels is None or result.level_damping is None:
         raise InputError("the result has no damping at levels; run it with [modes] levels")
-    count = result.level_damping.shape[2]
-    columns = min(4, count)
-    rows = -(-count // columns)
-    fig = new_figure(WIDE, min(0.7 + 1.45 * rows, 0.7 + TALLEST))
-    axes = fig.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
-    for ax in axes.flat[count:]:
-        ax.set_visible(False)
-    for mode in range(count):
-        damping_of(axes.flat[mode], result, mode, load)
-        axes.flat[mode].tick_params(labelbottom=mode + columns >= count)
-        axes.flat[mode].set_title(f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", pad=3)
+    fig, axes = mode_panels(result.level_damping.shape[2], sharex=True, sharey=True)
+    for mode, ax in enumerate(axes):
+        damping_of(ax, result, mode, load)
+        ax.set_title(f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", pad=3)
     fig.supxlabel(f"peak acceleration where the mode moves most [m/s²], at {load_text(result.loads[load])}")
     fig.supylabel("damping ratio [%]")
-    shared_legend(fig, axes.flat[:count])
+    shared_legend(fig, axes)
     return fig
 
 
@@ -43,10 +37,7 @@ def damping_of(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
     a = result.levels
     if result.level_low is not None and result.level_high is not None:
         low, high = (100 * one[load, :, mode] for one in (result.level_low, result.level_high))
-        if len(a) > 1:
-            ax.fill_between(a, low, high, color=COLOURS[0], alpha=0.18, lw=0, label="low to high")
-        else:
-            ax.vlines(a, low, high, color=COLOURS[0], alpha=0.35, lw=6, label="low to high")
+        band(ax, a, low, high, label="low to high")
     ax.plot(a, 100 * result.level_damping[load, :, mode], "o-", color=COLOURS[0], ms=3, label="damping")
     if result.level_slip is not None:
         slip = 100 * result.level_slip[load, :, mode]

@@ -135,6 +135,11 @@ def case_of(options: dict[str, Any]) -> Any:
             return default
         return float(value) if unit == "" else parse(value, unit, name=key)
 
+    def below(name: str) -> Material:
+        """What is under the cap: as the cap, where nothing else is given."""
+        own = number(f"{name}_E", "Pa", E), number(f"{name}_yield_strength", "Pa", strength)
+        return Material(name=name, E=own[0], nu=nu, yield_strength=own[1])
+
     base = CATALOGUE.get(options["material"])
     if base is None:
         raise InputError(f"material {options['material']!r} is unknown; choose from {', '.join(CATALOGUE)}")
@@ -142,21 +147,11 @@ def case_of(options: dict[str, Any]) -> Any:
     strength = number("yield_strength", "Pa", base.yield_strength)
     E = number("E", "Pa", base.E)
     cap = Material(name="cap", E=E, nu=nu, yield_strength=strength)
-    under = Material(
-        name="substrate",
-        E=number("substrate_E", "Pa", E),
-        nu=nu,
-        yield_strength=number("substrate_yield_strength", "Pa", strength),
-    )
+    under = below("substrate")
     thickness = number("layer_thickness", "m", 0.0)
     layer = None
     if thickness or options.get("layer_E") or options.get("layer_yield_strength"):
-        layer = Material(
-            name="layer",
-            E=number("layer_E", "Pa", E),
-            nu=nu,
-            yield_strength=number("layer_yield_strength", "Pa", strength),
-        )
+        layer = below("layer")
     moves, forces = (
         history_of(options.get(key) or (), key, unit) for key, unit in (("displacement", "m"), ("force", "N"))
     )
