@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from faying.cli.options import PATH
-from faying.output.terminal import folded
+from faying.output.terminal import folded, wrapped
 from faying.text import json_text
 
 COLUMNS = 80
@@ -40,14 +40,7 @@ def _lines(finding: Any) -> list[str]:
     """A finding in lines of 80 columns: level, line of the study, text."""
     place = "" if finding.line is None else f"line {finding.line}"
     head = f"{finding.level:<6}{place:<10}"
-    return textwrap.wrap(
-        finding.text,
-        COLUMNS,
-        initial_indent=head,
-        subsequent_indent=" " * len(head),
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    return wrapped(finding.text, COLUMNS, first=head, rest=" " * len(head))
 
 
 def to_dict(found: Any) -> dict[str, Any]:

@@ -1,11 +1,11 @@
 """Load cases as text of a terminal, 80 columns wide, and as rows."""
 
-from collections.abc import Sequence
 from textwrap import wrap
 
 import numpy as np
 
 from faying.output.table import Rows, text
+from faying.output.terminal import wrapped
 from faying.result.load_cases import ENOUGH, LoadCases
 from faying.typing import Array
 from faying.units import show
@@ -26,7 +26,7 @@ def terminal(found: LoadCases) -> str:
     """Return all cases as text."""
     lines = [f"{found.title}: load cases at a preload of {show(found.preload, 'N')}", ""]
     for k in range(len(found.cases)):
-        lines += [*_wrapped(heading(found, k)), text(bolt_rows(found, k), left=(0,)), ""]
+        lines += [*wrapped(heading(found, k)), text(bolt_rows(found, k), left=(0,)), ""]
         lines += [text(joint_rows(found, k), left=(0,)), ""]
         dowels = dowel_rows(found, k)
         lines += [text(dowels, left=(0,)), ""] if dowels else []
@@ -34,7 +34,7 @@ def terminal(found: LoadCases) -> str:
         modes = mode_rows(found, slice(first, first + CASES_IN_TABLE))
         lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
     lines += interval_lines(found)
-    lines += _wrapped(SCOPE)
+    lines += wrapped(SCOPE)
     for note in found.notes:
         lines += wrap(note.text, WIDTH, initial_indent="- ", subsequent_indent="  ", break_long_words=False)
     return "\n".join(lines)
@@ -140,7 +140,7 @@ def interval_lines(found: LoadCases) -> list[str]:
     words = (
         f"90 % intervals over {'; '.join(some.inputs)}. The check says by how much first order is off where all move."
     )
-    return [*_wrapped(words), text(rows, left=(0,)), ""]
+    return [*wrapped(words), text(rows, left=(0,)), ""]
 
 
 def _least(bounds: Array) -> str:
@@ -171,7 +171,3 @@ def _number(value: float, form: str) -> str:
 
 def _cut(name: str, most: int) -> str:
     return name if len(name) <= most else name[: most - 1] + "…"
-
-
-def _wrapped(line: str) -> Sequence[str]:
-    return wrap(line, WIDTH, break_long_words=False, break_on_hyphens=False)

@@ -55,10 +55,10 @@ def _chapters(result: Result, pictures: dict[str, str]) -> list[tuple[str, list[
     for title, names in CHAPTERS.items():
         parts = out.get(title, [])
         for name in names:
-            if name in TEXTS:
-                parts += TEXTS[name](result, pictures)
-            elif name in FIGURES and name not in TABLES:
-                parts += [_figure(name, pictures[name])] if name in pictures else []
+            if name in CURVES:
+                parts += CURVES[name](result, pictures)
+            elif name.startswith(FIGURE):
+                parts += _figure(name.removeprefix(FIGURE), pictures)
             else:
                 parts += _tables([one for one in every if one.name == name], result, pictures)
         out[title] = parts
@@ -78,8 +78,7 @@ def _answer(result: Result, pictures: dict[str, str]) -> list[str]:
     first = [section for section in sections(result) if section.name == "answer"]
     out = [f'<h2>Answer</h2><p class="lead">{escape(answer.lead(result))}</p>']
     tables = [page.table(section.rows, section.name) for section in first]
-    shown = [_figure("intervals", pictures["intervals"])] if "intervals" in pictures else []
-    out += ['<div class="pair">', *tables, *shown, "</div>"] if first else []
+    out += ['<div class="pair">', *tables, *_figure("intervals", pictures), "</div>"] if first else []
     return out + [f"<p>{page.typeset(escape(section.below))}</p>" for section in first] + _first_notes(result)
 
 
@@ -90,11 +89,12 @@ def _made_by(result: Result) -> str:
     return f"{result.unknowns:,} unknowns, factorised by {result.solver}; Faying {version}{when}."
 
 
-def _figure(name: str, picture: str, kind: str = "") -> str:
-    if name.startswith(TEST):
-        return ""
+def _figure(name: str, pictures: dict[str, str], kind: str = "") -> list[str]:
+    """A figure with its caption, where the result has it."""
+    if name not in pictures:
+        return []
     given = f' class="{kind}"' if kind else ""
-    return f"<figure{given}>{picture}<figcaption>{FIGURES[name].caption}</figcaption></figure>"
+    return [f"<figure{given}>{pictures[name]}<figcaption>{FIGURES[name].caption}</figcaption></figure>"]
 
 
 def _view(result: Result, pictures: dict[str, str]) -> list[str]:
@@ -104,7 +104,7 @@ def _view(result: Result, pictures: dict[str, str]) -> list[str]:
         f'<p id="why" class="soft"><noscript>{why}</noscript></p><div id="stage"></div>',
         pages.data(to_text(of_result(result)), "scene"),
         f'<p class="soft">{MAPS}</p>',
-        *(_figure(name, pictures[name], "static") for name in MOVING if name in pictures),
+        *(part for name in MOVING for part in _figure(name, pictures, "static")),
     ]
 
 
@@ -149,17 +149,17 @@ def _response(result: Result, pictures: dict[str, str]) -> list[str]:
     """Frequency responses as curves that zoom, and as the picture that stands in for them."""
     if result.response is None:
         return []
-    still = [_figure("response", pictures["response"], "of-response")] if "response" in pictures else []
-    return ["<h3>Frequency response</h3>", page.curves("response", response_curves(result)), *still]
+    curves = page.curves("response", response_curves(result))
+    return ["<h3>Frequency response</h3>", curves, *_figure("response", pictures, "of-response")]
 
 
 def _backbones(result: Result, pictures: dict[str, str]) -> list[str]:
     """Curves over amplitude that zoom, and the picture that stands in for them."""
     if not result.backbones:
         return []
-    still = [_figure("backbones", pictures["backbones"], "of-backbones")] if "backbones" in pictures else []
     head = f"<h3>Frequency and damping of mode {result.backbones[0].mode} over amplitude</h3>"
-    return [head, page.curves("backbones", backbone_curves(result.backbones)), *still]
+    curves = page.curves("backbones", backbone_curves(result.backbones))
+    return [head, curves, *_figure("backbones", pictures, "of-backbones")]
 
 
 def _provenance(result: Result) -> list[str]:
@@ -185,17 +185,19 @@ def _contact(result: Result) -> list[str]:
     return [f"<h3>Contact of {escape(', '.join(names))}</h3>{text}" for text, names in shared.items()]
 
 
-# chapter -> what stands in it, in order: names of tables, of figures, of what draws itself
+FIGURE = "figure of "  # stands before the name of a figure in a chapter
+# chapter -> what stands in it, in order: names of tables, of figures, of curves that zoom
 CHAPTERS = {
     "Structure": ("parts", "bolts", "bolting", "dowels"),
-    "Joints": ("joints", "pressure", "slip", "law", "surfaces", "conductance"),
+    "Joints": ("joints", "figure of pressure", "figure of slip", "figure of law", "surfaces", "conductance"),
     "Modes": (
-        *("modes", "frequencies", "damping", "figure of damping", "laws", "beyond", "mac", "response", "backbones"),
-        *("backbone", "backbone measured", "backbone bounds", "modal forces"),
+        *("modes", "figure of frequencies", "damping", "figure of damping", "laws", "beyond", "figure of mac"),
+        *("response", "backbones", "backbone", "backbone measured", "backbone bounds", "modal forces"),
     ),
     "Intervals": ("shares", "narrowing", "figure of narrowing", "ranges", "waves"),
     "Test": ("score", "comparison", "figure of comparison", "hammer"),
 }
+CURVES = {"response": _response, "backbones": _backbones}
 MAPS = (
     "Maps on joints: the value at a corner is the mean of the values at the points around it, weighted by area; peaks "
     "narrower than an element are flattened, and the table of joints has the greatest value at any point. Motion is "
@@ -288,22 +290,6 @@ FIGURES = {
         applies=lambda result: result.response is not None,
     ),
 }
-
-
-TABLES = ("modes", "damping", "narrowing", "comparison")  # tables whose names are those of figures, too
-
-
-def _own(name: str) -> Callable[[Result, dict[str, str]], list[str]]:
-    """What puts the figure of a name into a chapter, where the result has it."""
-
-    def drawn(result: Result, pictures: dict[str, str]) -> list[str]:
-        return [_figure(name, pictures[name])] if name in pictures else []
-
-    return drawn
-
-
-# what stands in a chapter under a name of its own
-TEXTS = {"response": _response, "backbones": _backbones, **{f"figure of {name}": _own(name) for name in TABLES}}
 
 
 def caption(name: str) -> str:

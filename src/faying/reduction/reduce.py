@@ -316,17 +316,23 @@ class Reduction:
         it is for the modes whose error exceeds the tolerance, real and imaginary parts where there is loss. which: of
         the modes, all of them where not given.
         """
-        springs = self.model.springs(laws, pressures)
-        values, vectors, _ = self.model.modes(springs, slight=0.0)  # no basis mends what first order leaves
-        values, vectors = values[which], vectors[:, which]
-        momentum = self.model.matrices[2] @ vectors
-        size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
-        parts = real_parts(self.modal_residual(springs, values, vectors))
+        parts, size = self.modal_parts(laws, pressures, which)
         solved = [self.factor.solve(np.asfortranarray(part)) for part in parts]
         energy = sum(np.einsum("ij,ij->j", part, answer) for part, answer in zip(parts, solved, strict=True))
         error = np.asarray(energy / size)
         poor = error > tolerance
         return error, np.concatenate([answer[:, poor] / np.sqrt(size[poor]) for answer in solved], axis=1)
+
+    def modal_parts(
+        self, laws: Sequence[JointLaw], pressures: Sequence[Array], which: Any
+    ) -> tuple[list[Array], Array]:
+        """What some modes of a variant leave (n, m), real and imaginary part where there is loss; their size (m,)."""
+        springs = self.model.springs(laws, pressures)
+        values, vectors, _ = self.model.modes(springs, slight=0.0)  # no basis corrects what first order leaves
+        values, vectors = values[which], vectors[:, which]
+        momentum = self.model.matrices[2] @ vectors
+        size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
+        return real_parts(self.modal_residual(springs, values, vectors)), size
 
     def modal_residual(self, springs: Sequence[Springs[ReducedMotion]], values: Any, vectors: Any) -> Any:
         """What complex eigenvalues (m,) and vectors (d, m) of a variant leave of the equations of motion (n, m)."""

@@ -9,7 +9,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.joint.equilibrium import PreloadState
 from faying.joint.joint_law import JointLaw
-from faying.reduction.reduce import FEW_STEPS, LEFT_OUT, STATIC_SHARE, Reduction, pressed, real_parts
+from faying.reduction.reduce import FEW_STEPS, LEFT_OUT, STATIC_SHARE, Reduction, pressed
 from faying.reduction.reduced import ReducedModel, Variant
 from faying.typing import Array
 
@@ -84,9 +84,11 @@ def _train_dynamic(
     """Grow the basis for vibration until all modes of every variant are right; tolerance: of the eigenvalues."""
     poor: list[Any] = [np.arange(reduction.model.count)] * len(variants)
     for _ in range(FEW_STEPS):
-        left = [
-            (k, *_residual(reduction, variants[k], found[k], poor[k])) for k in range(len(variants)) if len(poor[k])
-        ]
+        left = []
+        for k, one in enumerate(variants):
+            if len(poor[k]):
+                one.model(reduction)
+                left.append((k, *reduction.modal_parts(one.laws, found[k].pressures, poor[k])))
         right = np.asfortranarray(np.concatenate([part for _, parts, _ in left for part in parts], axis=1))
         answers = reduction.factor.solve(right)
         energy = np.einsum("ij,ij->j", right, answers)
@@ -106,14 +108,3 @@ def _train_dynamic(
     raise NotConverged(
         f"reduction: {FEW_STEPS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
     )
-
-
-def _residual(reduction: Reduction, variant: Gapped, found: PreloadState, which: Any) -> tuple[list[Array], Array]:
-    """What some modes of a variant leave (n, m), real and imaginary part where there is loss, and their size (m,)."""
-    model = variant.model(reduction)
-    springs = model.springs(variant.laws, found.pressures)
-    values, vectors, _ = model.modes(springs, slight=0.0)
-    values, vectors = values[which], vectors[:, which]
-    momentum = model.matrices[2] @ vectors
-    size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
-    return real_parts(reduction.modal_residual(springs, values, vectors)), size
