@@ -15,7 +15,7 @@ from faying.notes import Note, percent
 from faying.units import load_text
 
 FALL = 1e-6  # relative: a smaller fall is none
-FAR = 2.0  # factor between a law and the exact contact that is told
+FAR = 2.0  # factor between a law and the exact contact that is noted
 
 
 def falling(case: Case, states: Sequence[LoadedCase]) -> list[Note]:

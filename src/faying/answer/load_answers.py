@@ -204,8 +204,8 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
     forces = np.array(base.preload.bolt_forces)
     bolts = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), regions)
     if base.head_friction is not None:
-        said = np.where(np.isnan(base.head_friction), bolts.head_friction, base.head_friction)
-        bolts = replace(bolts, head_friction=said)
+        known = np.where(np.isnan(base.head_friction), bolts.head_friction, base.head_friction)
+        bolts = replace(bolts, head_friction=known)
     joints = joint_answers(structure, contacts, states, dissipated, regions)
     pressures = [[-traction[:, 0] for traction in state.tractions] for state in states]
     interfaces = [joint.interface for joint in structure.joints]

@@ -154,53 +154,53 @@ class _Maker:
     def groups(self, path: KeyPath, name: str, inner: Inner, data: Any) -> Iterator[FormGroup]:
         """The group of a table, then those of the tables within it."""
         group = FormGroup(path=path, name=name, says=inner.says, there=data is not None)
-        held = data if isinstance(data, Mapping) else {}
+        table = data if isinstance(data, Mapping) else {}
         inside: list[FormGroup] = []
         if inner.free:
-            group.fields.extend(self._field((*path, *rest), f"{name}.{'.'.join(rest)}", FREE) for rest in _flat(held))
+            group.fields.extend(self._field((*path, *rest), f"{name}.{'.'.join(rest)}", FREE) for rest in _flat(table))
             group.additions.append(self._scatter(path))
-        for key, what in _keys(inner, held).items():
+        for key, what in _keys(inner, table).items():
             here, its_name = (*path, key), f"{name}.{key}" if name else key
             if key == NAME:
-                inside += self._named(group, path, name, what, held)
+                inside += self._named(group, path, name, what, table)
             elif isinstance(what, Key):
                 group.fields.append(self._field(here, its_name, what))
             elif what.many:
-                inside += self._many(group, here, its_name, what, held.get(key))
+                inside += self._many(group, here, its_name, what, table.get(key))
             elif tuple(what.keys) == (NAME,):
-                inside += self._outer(group, here, its_name, what, held.get(key))
-            elif key in held or (not path and key in ALWAYS):
-                inside += self.groups(here, its_name, what, held.get(key))
+                inside += self._outer(group, here, its_name, what, table.get(key))
+            elif key in table or (not path and key in ALWAYS):
+                inside += self.groups(here, its_name, what, table.get(key))
             else:
                 group.additions.append(FormAddition(path=here, label=key, says=what.says))
         yield group
         yield from inside
 
-    def _many(self, group: FormGroup, path: KeyPath, name: str, inner: Inner, held: Any) -> Iterator[FormGroup]:
-        single = isinstance(held, Mapping)
-        entries = held if isinstance(held, list) else []
+    def _many(self, group: FormGroup, path: KeyPath, name: str, inner: Inner, table: Any) -> Iterator[FormGroup]:
+        single = isinstance(table, Mapping)
+        entries = table if isinstance(table, list) else []
         if single:
-            yield from self.groups(path, f"{name}[1]", inner, held)
+            yield from self.groups(path, f"{name}[1]", inner, table)
         for k, entry in enumerate(entries):
             yield from self.groups((*path, k), f"{name}[{k + 1}]", inner, entry)
         if not single:
             group.additions.append(FormAddition(path=(*path, len(entries)), label=str(path[-1]), says=inner.says))
 
-    def _outer(self, group: FormGroup, path: KeyPath, name: str, inner: Inner, held: Any) -> Iterator[FormGroup]:
+    def _outer(self, group: FormGroup, path: KeyPath, name: str, inner: Inner, table: Any) -> Iterator[FormGroup]:
         """A table that holds names of the user's own alone: its keys, or its tables, stand for themselves."""
         what = inner.keys[NAME]
         if isinstance(what, Key):
-            if held is not None:
-                yield from self.groups(path, name, inner, held)
+            if table is not None:
+                yield from self.groups(path, name, inner, table)
             else:
                 group.additions.append(self._new_name(path, what))
             return
-        yield from self._named(group, path, name, what, held if isinstance(held, Mapping) else {})
+        yield from self._named(group, path, name, what, table if isinstance(table, Mapping) else {})
 
     def _named(
-        self, group: FormGroup, path: KeyPath, name: str, what: Key | Inner, held: Mapping[str, Any]
+        self, group: FormGroup, path: KeyPath, name: str, what: Key | Inner, table: Mapping[str, Any]
     ) -> Iterator[FormGroup]:
-        for own, value in held.items():
+        for own, value in table.items():
             if isinstance(what, Key):
                 group.fields.append(self._field((*path, own), f"{name}.{own}", what, first=True))
             else:
@@ -216,8 +216,8 @@ class _Maker:
     def _scatter(self, path: KeyPath) -> FormAddition:
         parts, joints, bolts = self.data.get("part"), self.data.get("joint"), self.data.get("bolt")
         own = [f"part.{name}.stiffness" for name in (parts if isinstance(parts, Mapping) else ())]
-        for room, key, held in (("joint", "friction", joints), ("bolt", "factor", bolts)):
-            own += [f"{room}.{one['name']}.{key}" for one in _tables(held) if isinstance(one.get("name"), str)]
+        for room, key, table in (("joint", "friction", joints), ("bolt", "factor", bolts)):
+            own += [f"{room}.{one['name']}.{key}" for one in _tables(table) if isinstance(one.get("name"), str)]
         names = [*SHORT, *OF_MATERIAL, *OWN, "bolt.factor", *own]
         return FormAddition(
             path=path, label="uncertain.NAME", says=FREE.says, named=True, is_key=True, suggestions=names
@@ -254,13 +254,13 @@ class _Maker:
         return found + (self.faces if _shape(key) == "face" else [])
 
 
-def _keys(inner: Inner, held: Mapping[str, Any]) -> Declared:
+def _keys(inner: Inner, table: Mapping[str, Any]) -> Declared:
     """The keys of a table, with those of its law."""
     models = inner.models()
     if not models:
         return inner.keys
     try:
-        kind = find(held.get("model", AUTO))
+        kind = find(table.get("model", AUTO))
     except InputError:
         return inner.keys
     own = models.get(kind.law.name, {})
@@ -272,8 +272,8 @@ def _key_of(path: KeyPath, data: Mapping[str, Any]) -> Key:
     inner = _inner_of(path[:-1], data)
     if inner.free:
         return FREE
-    held = _value_at(data, path[:-1])
-    keys = _keys(inner, held if isinstance(held, Mapping) else {})
+    table = _value_at(data, path[:-1])
+    keys = _keys(inner, table if isinstance(table, Mapping) else {})
     found = keys.get(str(path[-1]), keys.get(NAME))
     if not isinstance(found, Key):
         raise InputError(f"{name_of(path)} is not a key of a study")
@@ -333,8 +333,8 @@ def _faces(data: Any, key: str = "") -> Iterator[str]:
             yield from _faces(one)
 
 
-def _tables(held: Any) -> list[Mapping[str, Any]]:
-    return [one for one in (held if isinstance(held, list) else [held]) if isinstance(one, Mapping)]
+def _tables(table: Any) -> list[Mapping[str, Any]]:
+    return [one for one in (table if isinstance(table, list) else [table]) if isinstance(one, Mapping)]
 
 
 def _ways(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:

@@ -168,7 +168,7 @@ def backbones(
     progress.stage("surface and mesh", 0.0)
     read = read_for(study, surfaces_of(study))
     for law in choice.laws:
-        other = study_with(study, _beside(study, law))
+        other = study_with(study, _on_all_joints(study, law))
         checked_laws(other, surfaces_of(other, read))  # raises, before the mesh
     case = Case.of(study, read=read)
     file = None if out is None else Path(out)
@@ -293,7 +293,7 @@ def _curves(
     return out
 
 
-def _beside(study: Study, law: LawChoice) -> AlternativeChoice:
+def _on_all_joints(study: Study, law: LawChoice) -> AlternativeChoice:
     """A law on all joints, with the parameters that the study gives it where all of them have it already."""
     own = {study.law_of(joint).kind.label: study.law_of(joint) for joint in study.joints}
     return AlternativeChoice(name=law.model, law=own[law.kind.label] if set(own) == {law.kind.label} else law)
@@ -301,7 +301,7 @@ def _beside(study: Study, law: LawChoice) -> AlternativeChoice:
 
 def _under(case: Case, law: LawChoice) -> Case:
     """The case under another law, with what there is to say of it."""
-    other = changed(case, _beside(case.study, law))
+    other = changed(case, _on_all_joints(case.study, law))
     kept = [note for note in case.notes if note not in law_reasons(case.structure, case.surfaces)]
     return replace(other, notes=(*kept, *law_reasons(other.structure, other.surfaces)))
 

@@ -63,12 +63,12 @@ def asked(proposal: Any, scan: Path | None) -> Any:
     known = next((bolt.preload for bolt in proposal.bolts if bolt.preload is not None), None)
     preload = None
     if proposal.bolts:
-        said = click.prompt(
+        answered = click.prompt(
             "preload of each bolt",
             default=units.show(known, "N") if known is not None else "10 kN",
             value_proc=lambda text: units.parse(text, "N", name="preload") and text,
         )
-        preload = units.parse(said, "N", name="preload")
+        preload = units.parse(answered, "N", name="preload")
     if scan is None:
         named = click.prompt("scan of one face (empty for a synthetic milled one)", default="", show_default=False)
         scan = Path(named) if named.strip() else None

@@ -30,7 +30,7 @@ from faying.text import few
 from faying.typing import Array
 
 SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
-TOUCHING = 1e-6  # of the structure's size: a gap above it is told
+TOUCHING = 1e-6  # of the structure's size: a gap above it is noted
 UNKNOWN_FRICTION = 0.2
 VALID = "validity: the law is within its validity range everywhere"
 
@@ -122,10 +122,10 @@ def attach(
     materials = _materials(study, mesh, faces)
     notes = [*(note.text for note in mesh.notes), *_apart(mesh, faces, interface)]
     if solving:
-        law, at_points, said = _solved(moved, mesh, faces, preload)
+        law, at_points, origin = _solved(moved, mesh, faces, preload)
     else:
         law = _joint_law(study, spec, mesh, faces, materials)
-        at_points, said = read_pressure(pressure, mesh, faces, interface)
+        at_points, origin = read_pressure(pressure, mesh, faces, interface)
     pairs, used = _pairs(interface, law, at_points, coupling)
     if coupling == "auto" and not pairs.lumped:
         notes.append(
@@ -137,14 +137,14 @@ def attach(
     system = UnitSystem(unit, force_unit)
     mean = float(area @ used / area.sum())
     p, force = system.pressure, f"{force_unit}/{unit}2"
-    said = f"pressure: {said}; least {used.min() * p:.6g}, mean {mean * p:.6g}, greatest {used.max() * p:.6g} {force}"
+    of_pressure = f"least {used.min() * p:.6g}, mean {mean * p:.6g}, greatest {used.max() * p:.6g} {force}"
     head = f"Joint of {faces[0]} and {faces[1]} in {file.name}, written by Faying {version('faying')}"
     deck = JointDeck(
         pairs=pairs,
         mesh=mesh,
         faces=faces,
         system=system,
-        facts=(head, *_facts(law, pairs, interface, system, said), *(flags or [VALID])),
+        facts=(head, *_facts(law, pairs, interface, system, f"pressure: {origin}; {of_pressure}"), *(flags or [VALID])),
         viscous=_dampers(pairs, mesh, materials, frequency, paper=damping == "paper"),
         paper=damping == "paper",
         frequency=frequency,
@@ -291,10 +291,10 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
     """Where the law has left its validity range."""
     out = []
     model, total = law.model, float(area.sum())
-    beyond = pressure > model.greatest_pressure
-    if np.any(beyond):
+    above = pressure > model.greatest_pressure
+    if np.any(above):
         out.append(
-            f"validity: on {float(area @ beyond) / total:.2%} of the joint the pressure exceeds the "
+            f"validity: on {float(area @ above) / total:.2%} of the joint the pressure exceeds the "
             f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness stays constant there"
         )
     for reason, share in law.outside_validity(pressure, area).items():

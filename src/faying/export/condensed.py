@@ -209,9 +209,9 @@ def _rigid(
 
     mesh = structure.mesh
     face_nodes = [mesh.face_nodes(face) for face in structure.joints[number].faces]
-    held = np.unique(structure.fixed // 3)
+    supported = np.unique(structure.fixed // 3)
     for face, nodes in zip(structure.joints[number].faces, face_nodes, strict=True):
-        if np.isin(nodes, held).any():
+        if np.isin(nodes, supported).any():
             raise InputError(f"a support holds some of the face {face!r}, which rigid ties would move")
     tied = np.concatenate([(3 * nodes[:, None] + np.arange(3)).ravel() for nodes in face_nodes])
     free = np.setdiff1d(np.arange(mesh.unknowns), tied)

@@ -50,26 +50,26 @@ def write(result: Result, folder: Path) -> list[Path]:
 
 
 def _at_test(result: Result, folder: Path) -> list[Path]:
-    beside = result.hammer
-    if beside is None:
+    comparison = result.hammer
+    if comparison is None:
         return []
-    model, points = beside.model, beside.point_map
+    model, points = comparison.model, comparison.point_map
     title = f"{model.title}, {load_text(model.load)}, at the points of the test"
     labels = list(points.nodes)
     # shapes in the axes of the test: x_test = rotation^T x_model
-    shapes = model.shapes[:, [beside.places[k] for k in labels]] @ points.transform.rotation
-    positions = {k: beside.test.positions[k] for k in labels}
+    shapes = model.shapes[:, [comparison.places[k] for k in labels]] @ points.transform.rotation
+    positions = {k: comparison.test.positions[k] for k in labels}
     made = [
         write_uff(folder / TEST_FILES[0], _modes(model.frequencies, model.loss_factors, shapes, positions), title=title)
     ]
-    if beside.frf is not None and beside.predicted is not None:
-        frf = beside.frf
-        pairs = np.zeros(beside.predicted.shape[:2], dtype=bool)
+    if comparison.frf is not None and comparison.predicted is not None:
+        frf = comparison.frf
+        pairs = np.zeros(comparison.predicted.shape[:2], dtype=bool)
         for pair in frf.measured:
             pairs[pair] = True
-        lines = np.isfinite(beside.predicted[pairs]).all(axis=0)
+        lines = np.isfinite(comparison.predicted[pairs]).all(axis=0)
         if lines.sum() >= 2:
-            values = np.where(pairs[:, :, None], beside.predicted, np.nan)[:, :, lines]
+            values = np.where(pairs[:, :, None], comparison.predicted, np.nan)[:, :, lines]
             of_model = FRF(
                 frequency=frf.frequency[lines],
                 values=values,

@@ -176,11 +176,11 @@ class Identification(Recorded):
 
     def _parameter_lines(self) -> list[str]:
         lines = [f"{'parameter':<26}{'5 %':>13}{'50 %':>13}{'95 %':>13}  sd/prior"]
-        for name, unit, row, told in zip(
+        for name, unit, row, share in zip(
             self.names, self.units, self.quantiles().T, self.posterior_contraction, strict=True
         ):
             cells = "".join(f"{show(v, unit) if unit else f'{v:.4g}':>13}" for v in row)
-            lines.append(f"{name if len(name) <= 25 else f'~{name[-24:]}':<26}{cells}{told:>10.2f}")
+            lines.append(f"{name if len(name) <= 25 else f'~{name[-24:]}':<26}{cells}{share:>10.2f}")
         return lines
 
     def _lines(self, measured: Array, predicted: Array, title: str, form: str) -> list[str]:
@@ -298,7 +298,7 @@ class Identification(Recorded):
         }
         return Group(
             attributes={"Conventions": "CF-1.11", "inference_library": "faying", RECORD: self.KIND},
-            groups={**{name: Group(variables=held) for name, held in groups.items()}, OWN: to_group(self)},
+            groups={**{name: Group(variables=inside) for name, inside in groups.items()}, OWN: to_group(self)},
         )
 
     @classmethod

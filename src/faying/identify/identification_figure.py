@@ -78,7 +78,11 @@ def _parameters(ax: Any, found: Identification) -> None:
         label="after it",
     )
     ax.set_yticks(
-        y, [f"{name_of(name)} ({told:.2f})" for name, told in zip(names, found.posterior_contraction, strict=True)]
+        y,
+        [
+            f"{name_of(name)} ({contraction:.2f})"
+            for name, contraction in zip(names, found.posterior_contraction, strict=True)
+        ],
     )
     ax.set_xlabel("5 to 95 % of the prior = 0 to 1; in brackets, sd after over sd before")
     ax.invert_yaxis()

@@ -123,9 +123,9 @@ def _what_counts(test: Array, loads: Array, leave_out: Sequence[int]) -> tuple[M
     """Which frequencies are wanted (load, mode), and which loads are left out; InputError for a test that is none."""
     if test.ndim != 2 or loads.shape != test.shape[:1]:
         raise InputError(f"test of shape {test.shape} for loads of shape {loads.shape}; it must be (load, mode)")
-    beyond = [k for k in leave_out if not 0 <= k < len(loads)]
-    if beyond:
-        raise InputError(f"leave_out = {beyond[0]}; the test has {len(loads)} loads, counted from 0")
+    outside = [k for k in leave_out if not 0 <= k < len(loads)]
+    if outside:
+        raise InputError(f"leave_out = {outside[0]}; the test has {len(loads)} loads, counted from 0")
     known = np.isfinite(test)
     if np.any(test[known] <= 0):
         raise InputError(f"the test has a frequency of {test[known].min():g} Hz; frequencies are positive")

@@ -27,8 +27,8 @@ from faying.sweeps.parallel import Rows
 from faying.typing import Array
 
 FEWEST, MOST = 8, 1_000_000  # samples
-BEYOND = 0.1  # share of the contact beyond the end of the law from which a sample is told
-TOLERANCE = 1e-3  # relative error of a frequency by the bases from which it is told
+ABOVE_RANGE = 0.1  # share of the contact above the end of the law from which a sample is noted
+TOLERANCE = 1e-3  # relative error of a frequency by the bases from which it is noted
 MOVED = 0.1  # of the distance from 5 to 95 % that half of the samples may move either by
 
 
@@ -148,7 +148,7 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
             "width; take more samples"
         )
         out.append(Note(code="few-samples", text=text))
-    far = int(np.count_nonzero(np.nanmax(found.above_range_share[found.sound], axis=1) > BEYOND))
+    far = int(np.count_nonzero(np.nanmax(found.above_range_share[found.sound], axis=1) > ABOVE_RANGE))
     if far:
         text = (
             f"{far} of {found.answered} samples press more than a tenth of the contact above the end of the law, "
@@ -178,12 +178,12 @@ def of_bases(errors: Array) -> list[Note]:
     if not np.any(np.concatenate(known) > TOLERANCE):
         return []
     places = ("the worst by their own estimate", "some others from all over")
-    told = [
+    parts = [
         f"{row.max():.1e} at {place} ({len(row)} looked at)"
         for row, place in zip(known, places, strict=True)
         if len(row)
     ]
-    return [Note(code="bases", text=f"the small bases miss a frequency of a sample by up to {', '.join(told)}")]
+    return [Note(code="bases", text=f"the small bases miss a frequency of a sample by up to {', '.join(parts)}")]
 
 
 def cut_notes(columns: Sequence[Any]) -> list[Note]:

@@ -60,9 +60,9 @@ def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: 
     for name, prior, values in zip(names, priors, samples.T, strict=True):
         of_noise = name in (SCATTER, DISCREPANCY, LOSS_SCATTER, LOSS_DISCREPANCY)
         # of ln x for a lognormal: pressed against its upper end, x itself scatters by more than before
-        told = float(prior.standardised(values).std(ddof=1) / prior.sd_standardised)
-        if told > UNSEEN and not of_noise:
-            text = f"The test carries no information about {name}: its posterior sd is {told:.0%} of its prior's."
+        left = float(prior.standardised(values).std(ddof=1) / prior.sd_standardised)
+        if left > UNSEEN and not of_noise:
+            text = f"The test carries no information about {name}: its posterior sd is {left:.0%} of its prior's."
             out.append(Note(code="not-told", text=text))
         ends = prior.quantile(np.array([END, 1 - END]))
         for share, side in ((np.mean(values < ends[0]), "lower"), (np.mean(values > ends[1]), "upper")):

@@ -83,7 +83,7 @@ def _five(value: float) -> str:
 
 
 def beyond(result: Result) -> Rows:
-    """One row per mode: held at the end of the law and bonded beyond it; empty where the law covers all pressures."""
+    """One row per mode: constant stiffness above the end of the law, and bonded there; empty where none is above."""
     if result.above_range_frequencies is None or result.above_range_loss_factors is None:
         return []
     rows: Rows = [["mode", *(f"{load_text(load)} constant .. bonded [Hz] (loss)" for load in result.loads)]]
@@ -102,7 +102,7 @@ def laws(result: Result) -> Rows:
 
     Where each law ends, the share of the joints beyond that, the share of their stiffness outside its validity range.
     Of the modes that differ most between the laws the frequency with its loss factor; two frequencies where it matters
-    whether what is beyond the end is held or bonded.
+    whether what is above the end has a constant stiffness or is bonded.
     """
     r = result
     if (
@@ -114,26 +114,26 @@ def laws(result: Result) -> Rows:
     if r.alternative_reach is None or r.alternative_above_range_share is None or r.alternative_outside_share is None:
         return []
     own = r.frequencies[-1] if r.above_range_frequencies is None else r.above_range_frequencies[-1]
-    held = np.stack([r.frequencies[-1], *r.alternative_frequencies[:, -1]])
+    constant = np.stack([r.frequencies[-1], *r.alternative_frequencies[:, -1]])
     bonded = np.stack([own, *r.alternative_above_range_frequencies[:, -1]])
-    lost = np.stack([r.loss_factors[-1], *r.alternative_loss_factors[:, -1]])
-    reach = [min(float(law["greatest_pressure [Pa]"]) for law in r.laws), *r.alternative_reach]
-    beyond = [r.above_range_share[-1], *r.alternative_above_range_share[:, -1]]
+    losses = np.stack([r.loss_factors[-1], *r.alternative_loss_factors[:, -1]])
+    ends = [min(float(law["greatest_pressure [Pa]"]) for law in r.laws), *r.alternative_reach]
+    above = [r.above_range_share[-1], *r.alternative_above_range_share[:, -1]]
     outside = [r.outside_share[-1], *r.alternative_outside_share[:, -1]]
-    spread = np.nanmax(bonded, axis=0) / np.nanmin(held, axis=0)
+    spread = np.nanmax(bonded, axis=0) / np.nanmin(constant, axis=0)
     shown = np.sort(np.argsort(-spread)[:SHOWN])
     rows: Rows = [["law", "ends [MPa]", "beyond", "outside", *(f"mode {j + 1} [Hz] (loss)" for j in shown)]]
     names = (" + ".join(dict.fromkeys(str(law["name"]) for law in r.laws)), *r.alternatives)
     for k, name in enumerate(names):
-        if np.isnan(reach[k]) or np.isnan(held[k]).all():
+        if np.isnan(ends[k]) or np.isnan(constant[k]).all():
             rows.append([name, *["-"] * (3 + len(shown))])
             continue
         cells = []
         for j in shown:
-            apart = bonded[k, j] / held[k, j] - 1 > SAME
-            two = f"{held[k, j]:.1f} .. {bonded[k, j]:.1f}" if apart else f"{held[k, j]:.1f}"
-            cells.append(two + ("" if np.isnan(lost[k, j]) else f" ({lost[k, j]:.1e})"))
-        rows.append([name, f"{reach[k] / 1e6:.3g}", f"{beyond[k]:.1%}", f"{outside[k]:.1%}", *cells])
+            apart = bonded[k, j] / constant[k, j] - 1 > SAME
+            two = f"{constant[k, j]:.1f} .. {bonded[k, j]:.1f}" if apart else f"{constant[k, j]:.1f}"
+            cells.append(two + ("" if np.isnan(losses[k, j]) else f" ({losses[k, j]:.1e})"))
+        rows.append([name, f"{ends[k] / 1e6:.3g}", f"{above[k]:.1%}", f"{outside[k]:.1%}", *cells])
     return rows
 
 

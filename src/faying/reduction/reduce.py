@@ -245,7 +245,7 @@ class Reduction:
         return made
 
     def refresh(self, coarse: int | None = None) -> None:
-        """Make `model` anew, under the gaps and scales that it has."""
+        """Make `model` again, under the gaps and scales that it has."""
         old = self.model
         self._project(old.count, old.coarse if coarse is None else coarse)
         self.model = replace(self.model, gaps=old.gaps, scales=old.scales)
@@ -280,7 +280,7 @@ class Reduction:
     def static_error(
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], found: PreloadState
     ) -> tuple[float, Array]:
-        """Error of an equilibrium in energy over that of the joints' springs [-], and what would mend it (n,)."""
+        """Error of an equilibrium in energy over that of the joints' springs [-], and what would correct it (n,)."""
         residual = self.static_residual(laws, forces, friction, found)
         answer = self.factor.solve(residual)
         return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / pressed(self.interfaces, laws, found)), answer
@@ -310,11 +310,11 @@ class Reduction:
     def modal_error(
         self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float = 0.0, which: Any = slice(None)
     ) -> tuple[Array, Array]:
-        """Estimated relative error of the complex eigenvalues (m,) of a variant, and what would mend it (n, k).
+        """Estimated relative error of the complex eigenvalues (m,) of a variant, and what would correct it (n, k).
 
-        The square of the residual in the energy norm: eigenvalues err by the square of their vectors. What would mend
-        it is for the modes whose error exceeds the tolerance, real and imaginary parts where there is loss. which: of
-        the modes, all of them where not given.
+        The square of the residual in the energy norm: eigenvalues err by the square of their vectors. What would
+        correct it is for the modes whose error exceeds the tolerance, real and imaginary parts where there is loss.
+        which: of the modes, all of them where not given.
         """
         parts, size = self.modal_parts(laws, pressures, which)
         solved = [self.factor.solve(np.asfortranarray(part)) for part in parts]
@@ -368,8 +368,8 @@ class Reduction:
         modal, _ = self.modal_error(laws, found.pressures, np.inf, slice(count))
         _, correction = self.static_error(laws, forces, friction, found)
         moved = [(interface.relative @ correction)[::3] for interface in self.interfaces]
-        mended = [law.pressure(-gap - by)[0] for law, gap, by in zip(laws, found.openings, moved, strict=True)]
-        old, new = (self.model.modes(self.model.springs(laws, p))[0].real for p in (found.pressures, mended))
+        corrected = [law.pressure(-gap - by)[0] for law, gap, by in zip(laws, found.openings, moved, strict=True)]
+        old, new = (self.model.modes(self.model.springs(laws, p))[0].real for p in (found.pressures, corrected))
         return float(modal.max() + np.abs(new / old - 1)[:count].max()) / 2  # of a square of a frequency
 
     def train_dynamic(self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float) -> None:

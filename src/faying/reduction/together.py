@@ -92,17 +92,17 @@ def _train_dynamic(
         right = np.asfortranarray(np.concatenate([part for _, parts, _ in left for part in parts], axis=1))
         answers = reduction.factor.solve(right)
         energy = np.einsum("ij,ij->j", right, answers)
-        mends, at = [], 0
+        corrections, at = [], 0
         for k, parts, size in left:
             spans = [slice(at + i * len(size), at + (i + 1) * len(size)) for i in range(len(parts))]
             far = np.sum([energy[span] for span in spans], axis=0) / size > tolerance
-            mends += [answers[:, span][:, far] / np.sqrt(size[far]) for span in spans]
+            corrections += [answers[:, span][:, far] / np.sqrt(size[far]) for span in spans]
             poor[k] = poor[k][far]
             at += len(parts) * len(size)
-        mends = [correction for correction in mends if correction.shape[1]]
-        if not mends:
+        corrections = [correction for correction in corrections if correction.shape[1]]
+        if not corrections:
             return
-        if not reduction.dynamic.add(np.concatenate(mends, axis=1), least=LEFT_OUT * tolerance):
+        if not reduction.dynamic.add(np.concatenate(corrections, axis=1), least=LEFT_OUT * tolerance):
             raise NotConverged("reduction: some modes stay wrong and nothing improves them")
         reduction.refresh()
     raise NotConverged(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import DataTree
 
-Whole = TypeVar("Whole")
+Kind = TypeVar("Kind")
 KEY = "variable"
 MOST_ARRAYS = 10  # that a summary has a line for
 RECORD = "faying_record"  # attribute of a file: what it holds
@@ -264,8 +264,8 @@ def to_group(value: Any) -> Group:
             continue
         if meta is not None:
             array = np.asarray(item)
-            held = variables.setdefault(meta.group, {})
-            held[meta.name or f.name] = Variable(dims=meta.dims, values=array, unit=meta.unit, long_name=meta.long_name)
+            into = variables.setdefault(meta.group, {})
+            into[meta.name or f.name] = Variable(dims=meta.dims, values=array, unit=meta.unit, long_name=meta.long_name)
         elif isinstance(item, np.ndarray):
             dims = tuple(f"{f.name}_{k}" for k in range(item.ndim))
             variables[""][f.name] = Variable(dims=dims, values=item)
@@ -282,9 +282,9 @@ def to_group(value: Any) -> Group:
         else:
             attributes[f.name] = json.dumps(item, default=_jsonable, ensure_ascii=False)
     root = variables.pop("")
-    for name, held in variables.items():
+    for name, inside in variables.items():
         inner = groups.get(name, Group())
-        groups[name] = Group(variables={**held, **inner.variables}, attributes=inner.attributes, groups=inner.groups)
+        groups[name] = Group(variables={**inside, **inner.variables}, attributes=inner.attributes, groups=inner.groups)
     return Group(variables=root, attributes=attributes, groups=groups)
 
 
@@ -329,17 +329,17 @@ def table_of(group: Group, root: Mapping[str, Variable]) -> "DataFrame":
 
     first = next(one for name, one in group.variables.items() if name != PRELOAD)
     sizes = dict(zip(first.dims, first.values.shape, strict=True))
-    held = {name: one for name, one in group.variables.items() if one.dims and set(one.dims) <= set(first.dims)}
+    columns_of = {name: one for name, one in group.variables.items() if one.dims and set(one.dims) <= set(first.dims)}
     labels = [root[dim].values if dim in root else np.arange(size) for dim, size in sizes.items()]
     index = pandas.MultiIndex.from_product(labels, names=list(sizes))
     columns = {}
-    for name, one in sorted(held.items(), key=lambda item: item[0] != PRELOAD):
+    for name, one in sorted(columns_of.items(), key=lambda item: item[0] != PRELOAD):
         shape = [sizes[dim] if dim in one.dims else 1 for dim in sizes]
         order = sorted(range(len(one.dims)), key=lambda k: list(sizes).index(one.dims[k]))
         values = one.values.transpose(order).reshape(shape)
         columns[name] = np.broadcast_to(values, tuple(sizes.values())).ravel()
     table = pandas.DataFrame(columns, index=index)
-    table.attrs["units"] = {name: one.unit for name, one in held.items()}
+    table.attrs["units"] = {name: one.unit for name, one in columns_of.items()}
     return table
 
 
@@ -375,16 +375,16 @@ def _jsonable(item: Any) -> Any:
     raise TypeError(f"{type(item).__name__} has no place in a file")
 
 
-def from_group(kind: type[Whole], group: Group) -> Whole:
+def from_group(kind: type[Kind], group: Group) -> Kind:
     """Return the dataclass that a tree was made of."""
     given: dict[str, Any] = {}
     hints = get_type_hints(kind)
     for f in fields(cast(Any, kind)):
         meta: Declared | None = f.metadata.get(KEY)
         name, hint = f.name, _without_none(hints[f.name])
-        held = None if meta is None else _variable_of(group, f.name, meta)
-        if meta is not None and held is not None:
-            given[f.name] = held.values.astype(meta.dtype)
+        found = None if meta is None else _variable_of(group, f.name, meta)
+        if meta is not None and found is not None:
+            given[f.name] = found.values.astype(meta.dtype)
         elif meta is None and name in group.variables and name not in group.attributes:  # else labels of its name
             given[f.name] = _as_hinted(group.variables[name].values, hint)
         elif f"{f.name}.0" in group.variables:

@@ -16,7 +16,7 @@ from faying.sweeps.axes import Axis, Grid
 from faying.typing import Array
 
 OF_MODES = ("frequencies", "loss_factors")  # columns with a value for each mode
-BEYOND = 0.1  # share of the contact beyond the end of the law from which a point is told
+ABOVE_RANGE = 0.1  # share of the contact above the end of the law from which a point is noted
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +62,7 @@ class Sweep:
             "basis": {"equilibrium": self.basis[0], "vibration": self.basis[1]},
             "without_answer": self.reasons,
             "found": self.found,
-            "beyond_law": int(np.count_nonzero(self.above_range_share > BEYOND)),
+            "beyond_law": int(np.count_nonzero(self.above_range_share > ABOVE_RANGE)),
             "file": str(self.path),
         }
 
