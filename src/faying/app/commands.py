@@ -128,7 +128,8 @@ class Job:
 
     def state(self) -> dict[str, Any]:
         """What the page shows of it."""
-        end = None if self.running else "cancelled" if self.cancelled else "done" if self._done else "failed"
+        done = self._process.returncode == 0
+        end = None if self.running else "cancelled" if self.cancelled else "done" if done else "failed"
         seconds = (self.ended or time.time()) - self.started
         return {
             "command": self.command,
@@ -139,7 +140,3 @@ class Job:
             "words": self.words,
             **self.progress,
         }
-
-    @property
-    def _done(self) -> bool:
-        return self._process.returncode == 0

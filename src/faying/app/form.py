@@ -234,7 +234,7 @@ class _Maker:
             label=label if key is not FREE else ".".join(str(one) for one in path[1:]),
             says=key.says,
             shape=shape,
-            choices=_choices(key),
+            choices=[str(one) for one in key.schema.get("enum", ())],
             suggestions=self._suggestions(label, key),
             default=key.default_text.strip('"'),
             unit=key.unit,
@@ -245,7 +245,8 @@ class _Maker:
         )
 
     def _suggestions(self, label: str, key: Key) -> list[str]:
-        found = [*key.examples(), *_words(key.schema)]
+        words = [word for way in _ways(key.schema) for word in way.get("enum", ())]  # in place of a number
+        found = [*key.examples(), *(words if "anyOf" in key.schema else [])]
         if label in FILES and (key.is_file or label == "counter"):
             found += self.files.get(FILES[label], ())
         if label == "material":
@@ -339,15 +340,6 @@ def _tables(table: Any) -> list[Mapping[str, Any]]:
 
 def _ways(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     return [way for one in schema["anyOf"] for way in _ways(one)] if "anyOf" in schema else [schema]
-
-
-def _words(schema: Mapping[str, Any]) -> list[str]:
-    """Words that may stand in place of a number."""
-    return [word for way in _ways(schema) for word in way.get("enum", ())] if "anyOf" in schema else []
-
-
-def _choices(key: Key) -> list[str]:
-    return [str(one) for one in key.schema.get("enum", ())]
 
 
 def _shape(key: Key) -> Shape:

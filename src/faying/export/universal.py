@@ -38,7 +38,8 @@ def write(result: Result, folder: Path) -> list[Path]:
     """
     response = result.response
     labels = _labels(response)
-    nodes = _spread(result.outline, [_nearest(result.outline, p) for p in labels])
+    nearest = [int(np.argmin(np.linalg.norm(result.outline - np.array(point), axis=1))) for point in labels]
+    nodes = _spread(result.outline, nearest)
     positions = {k + 1: tuple(float(v) for v in result.outline[node]) for k, node in enumerate(nodes)}
     positions |= {k: p for p, k in labels.items()}
     title = f"{result.title}, {load_text(result.loads[-1])}"
@@ -134,10 +135,6 @@ def _name(axis: tuple[float, ...]) -> str | None:
     if abs(unit[k]) < 0.9998:
         return None
     return ("-" if unit[k] < 0 else "") + "xyz"[k]
-
-
-def _nearest(points: Array, place: tuple[float, ...]) -> int:
-    return int(np.argmin(np.linalg.norm(points - np.array(place), axis=1)))
 
 
 def _spread(points: Array, first: list[int]) -> list[int]:

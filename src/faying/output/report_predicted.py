@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from html import escape
-from typing import Any
 
 from faying.errors import InputError
 from faying.identify.identification import Identification
@@ -44,7 +43,7 @@ def predicted(found: Prediction) -> str:
     ]
     body = [
         f"<h1>{escape(found.title)}: prediction</h1>",
-        f'<p class="soft">{_answered(found)}</p>',
+        f'<p class="soft">{found.answered} of {len(found.values)} samples have an answer.</p>',
         *_notes(found.notes),
     ]
     for title, lines, below in tables:
@@ -75,10 +74,6 @@ def identified(found: Identification, title: str, source: str) -> str:
         f"<figure>{page.picture('identification', drawing.figure(found))}</figure>",
     ]
     return page.document(f"{title}: identification", "".join(body))
-
-
-def _answered(found: Any) -> str:
-    return f"{found.answered} of {len(found.values)} samples have an answer."
 
 
 def _notes(notes: Sequence[Note]) -> list[str]:

@@ -256,11 +256,6 @@ def dowels(result: Result) -> Rows:
     return rows
 
 
-def _bounded(bounds: Array) -> str:
-    low, high = bounds
-    return "-" if np.isnan(low) else f"{low:.2g} .. {high:.2g}"
-
-
 def bolting(result: Result) -> Rows:
     """One row per preload and bolt: compliances, load factor, strength and embedding; a dash for what is not known."""
     b = result.bolt_numbers
@@ -273,7 +268,7 @@ def bolting(result: Result) -> Rows:
         return np.broadcast_to(values, shape).ravel()
 
     def bounded(bounds: Array) -> list[str]:
-        return [_bounded(pair) for pair in bounds.reshape(2, -1).T]
+        return ["-" if np.isnan(low) else f"{low:.2g} .. {high:.2g}" for low, high in bounds.reshape(2, -1).T]
 
     rows = in_columns(
         ("preload", [load_text(load) if k == 0 else "" for load in result.loads for k in range(shape[1])], ""),

@@ -269,13 +269,13 @@ def to_group(value: Any) -> Group:
         elif isinstance(item, np.ndarray):
             dims = tuple(f"{f.name}_{k}" for k in range(item.ndim))
             variables[""][f.name] = Variable(dims=dims, values=item)
-        elif _is_arrays(item):
+        elif _some_of(np.ndarray, item):
             for k, part in enumerate(item):
                 dims = tuple(f"{f.name}_{k}_{j}" for j in range(part.ndim))
                 variables[""][f"{f.name}.{k}"] = Variable(dims=dims, values=part)
         elif is_dataclass(item):
             groups[f.name] = to_group(item)
-        elif _is_recorded(item):
+        elif _some_of(Recorded, item):
             groups |= {f"{f.name}.{k}": to_group(part) for k, part in enumerate(item)}
         elif isinstance(item, str | int | float) and not isinstance(item, bool):
             attributes[f.name] = item if item != "" else " "  # an empty attribute is none
@@ -357,12 +357,9 @@ def read_tree(path: str | Path, kind: str = "file", command: str = "") -> Group:
         raise ReadError(f"{file}: no {kind} of Faying, or damaged ({fault}){hint}") from None
 
 
-def _is_arrays(item: Any) -> bool:
-    return isinstance(item, tuple) and bool(item) and all(isinstance(part, np.ndarray) for part in item)
-
-
-def _is_recorded(item: Any) -> bool:
-    return isinstance(item, tuple) and bool(item) and all(isinstance(part, Recorded) for part in item)
+def _some_of(kind: type, item: Any) -> bool:
+    """Whether it is a tuple of one or more of a kind."""
+    return isinstance(item, tuple) and bool(item) and all(isinstance(part, kind) for part in item)
 
 
 def _jsonable(item: Any) -> Any:

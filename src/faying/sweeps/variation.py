@@ -68,7 +68,7 @@ class StudyVariant:
         room, name = parts[0], parts[-1]
         if room == "surface":
             pairs = zip(study.joints, self.surfaces, strict=True)
-            kept = tuple(s if joint.surface is not None else _with(s, name, value) for joint, s in pairs)
+            kept = tuple(s if joint.surface is not None else s.with_number(name, value) for joint, s in pairs)
             return replace(self, surfaces=kept)
         if room == "law":
             law = study.law
@@ -104,8 +104,3 @@ def _with_form(joint: JointChoice, key: list[str], value: float) -> JointChoice:
     if len(key) == 4 and key[1] != joint.name:
         return joint
     return replace(joint, form=(joint.form or Form()).with_value(key[-1], value))
-
-
-def _with(surface: Surface, name: str, value: float) -> Surface:
-    """The surface with one of D, G and scan_area changed."""
-    return surface.with_number(name, value)

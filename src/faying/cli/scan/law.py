@@ -11,6 +11,7 @@ from faying.cli.options import PATH, quantity
 from faying.errors import InputError
 from faying.files import write_text
 from faying.output.terminal import folded
+from faying.text import csv_text as csv_rows
 from faying.text import json_text
 from faying.units import lengths, parse, show
 
@@ -398,5 +399,5 @@ def csv_text(law: Any, response: Any, h: Any = None) -> str:
     units = UNITS | {"h": HEAT}
     head = [f"{name} [{units[name] or '-'}]" for name in quantities]
     rows = zip(*(value.tolist() for value in quantities.values()), response.valid.tolist(), strict=True)
-    body = "\n".join(",".join(repr(v) if isinstance(v, float) else str(v).lower() for v in row) for row in rows)
-    return f"# {law.name}, {law.source}\n" + ",".join([*head, "valid"]) + "\n" + body + "\n"
+    cells = ([repr(v) if isinstance(v, float) else str(v).lower() for v in row] for row in rows)
+    return f"# {law.name}, {law.source}\n" + csv_rows([[*head, "valid"], *cells])

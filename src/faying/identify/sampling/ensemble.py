@@ -56,7 +56,8 @@ class Inputs:
             columns += more
         if choice.models:
             check_key(study, MODEL, models=True, where="uncertain.law.model")
-            columns.append(Input(key=MODEL, distribution=_uniform(), unit=""))
+            share = Distribution(kind="uniform", centre=0.5, spread=0.5)
+            columns.append(Input(key=MODEL, distribution=share, unit=""))
         return cls(columns=tuple(columns), models=choice.models, scatter=scatter)
 
     @property
@@ -128,10 +129,6 @@ def scattering(study: Study) -> UncertainChoice:
             'preload = {tightening = "torque wrench, friction estimated"}\nE = "200 GPa +- 4 GPa"'
         )
     return choice
-
-
-def _uniform() -> Distribution:
-    return Distribution(kind="uniform", centre=0.5, spread=0.5)
 
 
 def _with_surface(

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -290,7 +289,7 @@ class Reduced:
             work = Evaluator(model=self.model.grouped(), recipe=recipe, seen=self.seen)
             self._work[law] = work.with_median(law)
         work = replace(self._work[law], recipe=recipe, test=ensemble.study.test)
-        return each(partial(_rows, work), chunks, self.jobs, self.dask, "samples")
+        return each(work.rows, chunks, self.jobs, self.dask, "samples")
 
 
 def _all_loads(ensemble: Ensemble, samples: Iterable[int]) -> list[int]:
@@ -311,7 +310,3 @@ def _put(out: Rows, count: int, indices: Sequence[int], rows: Rows) -> None:
             empty = np.full((count, *values.shape[1:]), np.nan)
             out[name] = np.full(count, "", dtype=object) if name == "reasons" else empty
         out[name][list(indices)] = values
-
-
-def _rows(work: Evaluator, samples: Sequence[int]) -> Rows:
-    return work.rows(samples)

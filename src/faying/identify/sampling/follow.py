@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -136,7 +135,7 @@ class Follower:
         done = {sample: rows for sample, rows in kept.items() if rows is not None}
         left = [[sample] for sample in range(count) if sample not in done]
         reduced.report("backbones", len(done), count)
-        for (sample,), rows in each(partial(_rows, self), left, reduced.jobs, reduced.dask, "samples"):
+        for (sample,), rows in each(self.rows, left, reduced.jobs, reduced.dask, "samples"):
             reduced.store.keep_rows("backbone", sample, rows)
             done[sample] = rows
             reduced.report("backbones", len(done), count)
@@ -152,7 +151,3 @@ class Follower:
             ends=dict(by_reason(found["ends"].tolist())),
             **measured_points(self.choice.measured),
         )
-
-
-def _rows(work: Follower, samples: Sequence[int]) -> Rows:
-    return work.rows(samples)
