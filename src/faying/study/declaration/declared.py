@@ -3,8 +3,8 @@
 Readers, messages, the JSON schema, the page's form and the reference follow from these declarations.
 """
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any
 
 from faying.contact.parameter import FILE, TEXT, Parameter
@@ -23,28 +23,29 @@ Schema = Mapping[str, Any]
 Read = Callable[[Any, str], Any]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Key:
     """One key that is not a table.
 
     Args:
-        says: what it means, one sentence.
         kind: what is written there, in words.
         schema: what is written there, as a JSON schema.
+        says: what it means, one sentence.
+        default: its value where it is left out, in SI units; REQUIRED where it cannot be left out.
         read: converts what is written, and raises InputError; None where the reader of the table converts it, since
             that depends on other keys.
-        default: its value where it is left out, in SI units; REQUIRED where it cannot be left out.
         unit: SI unit of a quantity.
         allowed: range or choices, in words.
         is_file: whether it names a file.
         examples: returns values among those that are often taken, or all that a list outside of the study holds.
     """
 
-    says: str
     kind: str
     schema: Schema
-    read: Read | None = None
+    says: str
     default: Any = None
+    _: KW_ONLY
+    read: Read | None = None
     unit: str = ""
     allowed: str = ""
     is_file: bool = False
@@ -54,6 +55,98 @@ class Key:
     def default_text(self) -> str:
         """The default as a study writes it; "" where there is none."""
         return "" if self.default is REQUIRED else _written(self.default, self.unit)
+
+    @classmethod
+    def quantity(cls, unit: str, says: str, default: Any = None, *, positive: bool = True) -> "Key":
+        """A number with its unit."""
+        return cls(
+            f"quantity [{unit}]",
+            QUANTITY,
+            says,
+            default,
+            read=lambda value, name: values.quantity(value, unit, name, positive=positive),
+            unit=unit,
+            allowed="positive" if positive and default != 0 else "",
+        )
+
+    @classmethod
+    def text(cls, says: str, default: Any = None, choices: tuple[str, ...] = (), **given: Any) -> "Key":
+        """Text, one of some choices where they are given."""
+        return cls(
+            TEXT,
+            _one_of(choices),
+            says,
+            default,
+            read=lambda value, name: values.text(value, name, choices),
+            allowed=" or ".join(f'"{word}"' for word in choices),
+            **given,
+        )
+
+    @classmethod
+    def number(cls, says: str, default: Any = None) -> "Key":
+        """A plain number."""
+        return cls("number", NUMBER, says, default, read=values.number)
+
+    @classmethod
+    def within(cls, least: float, greatest: float, says: str, default: Any = None) -> "Key":
+        """A plain number from the least to the greatest."""
+
+        def read(value: Any, name: str) -> float:
+            return values.within(value, name, least, greatest)
+
+        return cls("number", NUMBER, says, default, read=read, allowed=f"{least:g} to {greatest:g}")
+
+    @classmethod
+    def count(cls, says: str, default: Any = None, *, most: int = MOST) -> "Key":
+        """A whole number from 1."""
+
+        def read(value: Any, name: str) -> int:
+            return values.whole_number(value, name, most)
+
+        return cls("whole number", WHOLE | {"maximum": most}, says, default, read=read, allowed=f"1 to {most:,}")
+
+    @classmethod
+    def truth(cls, says: str, default: bool = False) -> "Key":
+        """True or false."""
+        return cls("true or false", {"type": "boolean"}, says, default, read=values.truth)
+
+    @classmethod
+    def file(cls, says: str, default: Any = None) -> "Key":
+        """The name of a file."""
+        return cls("file", WORDS, says, default, is_file=True)
+
+    @classmethod
+    def point(cls, says: str, default: Any = None) -> "Key":
+        """Three lengths."""
+        kind = 'three lengths, for example ["0 mm", "10 mm", "0 mm"]'
+        return cls(kind, listed(QUANTITY, 3, 3), says, default, read=values.point, unit="m")
+
+    @classmethod
+    def direction(cls, says: str, default: Any = None) -> "Key":
+        """Three numbers that are not all 0."""
+        kind = "three numbers, for example [1, 0, 0]"
+        return cls(kind, listed({"type": "number"}, 3, 3), says, default, read=values.direction)
+
+    @classmethod
+    def length_unit(cls, says: str) -> "Key":
+        """The name of a unit of length, such as "mm"."""
+        return cls(TEXT, WORDS, says, read=values.length_unit, examples=lambda: ("mm", "um", "m"))
+
+    @classmethod
+    def of_parameter(cls, parameter: Parameter, default: Any = None) -> "Key":
+        """A key with the unit, range, choices and words of a parameter of a law or a form."""
+        unit = parameter.unit if parameter.is_number else ""
+        if parameter.unit == FILE:
+            return cls.file(parameter.meaning, default)
+        if parameter.unit == TEXT:
+            schema = _one_of(parameter.choices)
+        elif parameter.is_switch:
+            schema = {"anyOf": [{"type": "boolean"}, NUMBER]}
+        else:
+            schema = QUANTITY if unit else NUMBER
+        kind = f"quantity [{unit}]" if unit else "number" if parameter.is_number else TEXT
+        read, allowed = parameter.read, parameter.allowed
+        return cls(kind, schema, parameter.meaning, default, read=read, unit=unit, allowed=allowed)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,6 +187,10 @@ def _written(value: Any, unit: str) -> str:
     return f'"{value}"'
 
 
+def _one_of(choices: Sequence[str]) -> Schema:
+    return {"enum": list(choices)} if len(choices) > 1 else WORDS
+
+
 def listed(item: Schema, least: int, most: int | None = None) -> dict[str, Any]:
     """The schema of a list of so many items."""
     return {"type": "array", "items": item, "minItems": least} | ({} if most is None else {"maxItems": most})
@@ -102,130 +199,6 @@ def listed(item: Schema, least: int, most: int | None = None) -> dict[str, Any]:
 def one_or_more(item: Schema) -> dict[str, Any]:
     """The schema of one item, or a list of them."""
     return {"anyOf": [item, listed(item, 1)]}
-
-
-def quantity(unit: str, says: str, default: Any = None, *, positive: bool = True) -> Key:
-    """A number with its unit."""
-    return Key(
-        says=says,
-        kind=f"quantity [{unit}]",
-        schema=QUANTITY,
-        read=lambda value, name: values.quantity(value, unit, name, positive=positive),
-        default=default,
-        unit=unit,
-        allowed="positive" if positive and default != 0 else "",
-    )
-
-
-def text(
-    says: str, default: Any = None, choices: tuple[str, ...] = (), *, examples: Callable[[], Iterable[str]] = tuple
-) -> Key:
-    """Text, one of some choices where they are given."""
-    return Key(
-        says=says,
-        kind="text",
-        schema={"enum": list(choices)} if len(choices) > 1 else WORDS,
-        read=lambda value, name: values.text(value, name, choices),
-        default=default,
-        allowed=" or ".join(f'"{word}"' for word in choices),
-        examples=examples,
-    )
-
-
-def number(says: str, default: Any = None) -> Key:
-    """A plain number."""
-    return Key(says=says, kind="number", schema=NUMBER, read=values.number, default=default)
-
-
-def within(least: float, greatest: float, says: str, default: Any = None) -> Key:
-    """A plain number from the least to the greatest."""
-    return Key(
-        says=says,
-        kind="number",
-        schema=NUMBER,
-        read=lambda value, name: values.within(value, name, least, greatest),
-        default=default,
-        allowed=f"{least:g} to {greatest:g}",
-    )
-
-
-def count(says: str, default: Any = None, *, most: int = MOST) -> Key:
-    """A whole number from 1."""
-    return Key(
-        says=says,
-        kind="whole number",
-        schema=WHOLE | {"maximum": most},
-        read=lambda value, name: values.whole_number(value, name, most),
-        default=default,
-        allowed=f"1 to {most:,}",
-    )
-
-
-def truth(says: str, default: bool = False) -> Key:
-    """True or false."""
-    return Key(says=says, kind="true or false", schema={"type": "boolean"}, read=values.truth, default=default)
-
-
-def file(says: str, default: Any = None) -> Key:
-    """The name of a file."""
-    return Key(says=says, kind="file", schema=WORDS, default=default, is_file=True)
-
-
-def point(says: str, default: Any = None) -> Key:
-    """Three lengths."""
-    kind = 'three lengths, for example ["0 mm", "10 mm", "0 mm"]'
-    return Key(says=says, kind=kind, schema=listed(QUANTITY, 3, 3), read=values.point, default=default, unit="m")
-
-
-def direction(says: str, default: Any = None) -> Key:
-    """Three numbers that are not all 0."""
-    kind = "three numbers, for example [1, 0, 0]"
-    return Key(says=says, kind=kind, schema=listed({"type": "number"}, 3, 3), read=values.direction, default=default)
-
-
-def length_unit(says: str) -> Key:
-    """The name of a unit of length, such as "mm"."""
-    return Key(says=says, kind="text", schema=WORDS, read=values.length_unit, examples=lambda: ("mm", "um", "m"))
-
-
-def own(
-    kind: str,
-    schema: Schema,
-    says: str,
-    default: Any = None,
-    *,
-    read: Read | None = None,
-    unit: str = "",
-    allowed: str = "",
-    examples: Callable[[], Iterable[str]] = tuple,
-) -> Key:
-    """A key with a form of its own; read: None where the reader of its table converts it."""
-    return Key(
-        says=says, kind=kind, schema=schema, read=read, default=default, unit=unit, allowed=allowed, examples=examples
-    )
-
-
-def of_parameter(parameter: Parameter, default: Any = None) -> Key:
-    """A key with the unit, range, choices and words of a parameter of a law or a form."""
-    unit = parameter.unit if parameter.is_number else ""
-    if parameter.unit == FILE:
-        return file(parameter.meaning, default)
-    choices = list(parameter.choices)
-    if parameter.unit == TEXT:
-        schema: Schema = {"enum": choices} if len(choices) > 1 else WORDS
-    elif parameter.is_switch:
-        schema = {"anyOf": [{"type": "boolean"}, NUMBER]}
-    else:
-        schema = QUANTITY if unit else NUMBER
-    return Key(
-        says=parameter.meaning,
-        kind=f"quantity [{unit}]" if unit else "number" if parameter.is_number else TEXT,
-        schema=schema,
-        read=parameter.read,
-        default=default,
-        unit=unit,
-        allowed=parameter.allowed,
-    )
 
 
 def key_of(declared: Declared, name: str) -> Key:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from faying.form.form import Form
-from faying.study.declaration.declared import Declared, Inner, text
+from faying.study.declaration.declared import Declared, Inner, Key
 from faying.study.declaration.reader import Table
 from faying.study.keys.form import FORM, read_form
 from faying.study.keys.law import LAW, LawChoice
@@ -13,7 +13,7 @@ ALTERNATIVE: Declared = {
     "law": Inner(says="The law, with the keys of [law].", keys=LAW.keys, models=LAW.models),
     "surface": Inner(says="The surface, with the keys of [surface].", keys=SURFACE, either=True),
     "form": Inner(says="The form, with the keys of [joint.form].", keys=FORM),
-    "name": text("What tables call it; the label of its law where left out.", "auto"),
+    "name": Key.text("What tables call it; the label of its law where left out.", "auto"),
 }
 
 

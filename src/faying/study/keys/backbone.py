@@ -10,19 +10,7 @@ from faying.contact.build import find
 from faying.errors import InputError
 from faying.joint.modal import MAX_MODES
 from faying.measured.ring_down import MeasuredBackbone
-from faying.study.declaration.declared import (
-    NUMBER,
-    QUANTITY,
-    WORDS,
-    Declared,
-    count,
-    file,
-    listed,
-    one_or_more,
-    own,
-    point,
-    text,
-)
+from faying.study.declaration.declared import NUMBER, QUANTITY, WORDS, Declared, Key, listed, one_or_more
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import number
 from faying.study.keys.law import LawChoice
@@ -125,8 +113,8 @@ def _rest(value: Any, name: str) -> float | str:
 
 
 BACKBONE: Declared = {
-    "mode": count("Elastic mode, from 1.", 1, most=MAX_MODES),
-    "amplitude": own(
+    "mode": Key.count("Elastic mode, from 1.", 1, most=MAX_MODES),
+    "amplitude": Key(
         'two accelerations, for example ["0.1 m/s^2", "60 m/s^2"]',
         listed(QUANTITY, 2, 2),
         "First and last acceleration.",
@@ -134,31 +122,31 @@ BACKBONE: Declared = {
         read=accelerations,
         unit="m/s^2",
     ),
-    "at": point("Point whose acceleration that is; where the mode moves most if left out."),
-    "friction": own(
+    "at": Key.point("Point whose acceleration that is; where the mode moves most if left out."),
+    "friction": Key(
         "a number or a list of them",
         one_or_more(NUMBER),
         ("Coefficient for all joints, or a list with a curve for each; those of the joints where left out."),
         (),
         read=frictions,
     ),
-    "harmonics": count("Highest harmonic of the motion, 1 to 9.", 3, most=9),
-    "rest_damping": own(
+    "harmonics": Key.count("Highest harmonic of the motion, 1 to 9.", 3, most=9),
+    "rest_damping": Key(
         'a number, or "law"',
         {"anyOf": [{"type": "number"}, {"const": "law"}]},
         'Ratio to critical that is added, or "law": what the laws lose without slip.',
         0.0,
         read=_rest,
     ),
-    "slip": text(
+    "slip": Key.text(
         "Sliders that follow the curve of the law, or one slider at each point.", "microslip", ("microslip", "coulomb")
     ),
-    "law": own(
+    "law": Key(
         'the name of a law, or a list of them, such as ["auto", "jk"]',
         one_or_more(WORDS),
         ("Contact law of all joints, or a list with a curve for each; that of the study where left out."),
         (),
         read=laws,
     ),
-    "measured": file("CSV file of measured points: acceleration, frequency, damping."),
+    "measured": Key.file("CSV file of measured points: acceleration, frequency, damping."),
 }

@@ -10,21 +10,9 @@ from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import PROOF, Fastener, Thread
 from faying.errors import InputError
 from faying.materials import CATALOGUE, Material
-from faying.study.declaration.declared import (
-    QUANTITY,
-    REQUIRED,
-    Declared,
-    Inner,
-    listed,
-    number,
-    one_or_more,
-    own,
-    point,
-    quantity,
-    text,
-)
+from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed, one_or_more
 from faying.study.declaration.reader import Table
-from faying.study.declaration.values import quantity as read_quantity
+from faying.study.declaration.values import quantity
 from faying.study.keys.face import face_names, two_faces
 from faying.study.keys.material import named_material
 
@@ -144,7 +132,7 @@ def _washer(table: Table, bolt: str, materials: Mapping[str, Material]) -> Washe
 def _ring(value: Any, name: str) -> tuple[float, float]:
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(f'{name} = {value!r} should be inner and outer diameter, for example ["8.4 mm", "16 mm"]')
-    inner, outer = (read_quantity(v, "m", name, positive=False) for v in value)
+    inner, outer = (quantity(v, "m", name, positive=False) for v in value)
     return inner, outer
 
 
@@ -176,11 +164,11 @@ def _rising(value: Any, name: str, unit: str, example: str) -> tuple[float, ...]
     items = value if isinstance(value, list) else [value]
     if not items:
         raise InputError(f'{name} is empty; give one or more, for example "{example}"')
-    loads = [read_quantity(v, unit, name, positive=False) for v in items]
+    loads = [quantity(v, unit, name, positive=False) for v in items]
     for item, load in zip(items, loads, strict=True):
         if load <= 0:
             raise InputError(f'{name} = "{item}": a preload pulls the joint together and must be positive')
-        read_quantity(item, unit, name)  # refuses what no bolt can have
+        quantity(item, unit, name)  # refuses what no bolt can have
     if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
         raise InputError(
             f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers the "
@@ -191,72 +179,72 @@ def _rising(value: Any, name: str, unit: str, example: str) -> tuple[float, ...]
 
 
 BOLT: Declared = {
-    "name": text("What tables call it.", "bolt 1"),
+    "name": Key.text("What tables call it.", "bolt 1"),
     "faces": two_faces("The two faces that head and nut press on."),
-    "at": point(
+    "at": Key.point(
         "A point on the axis, where a face holds more than one seat; of a meshed bolt, where the shank is drawn in."
     ),
-    "part": text("The part that is the bolt, where it is meshed."),
-    "diameter": quantity("m", "Diameter of the shank; with material, the bolt has stiffness and mass."),
-    "pitch": quantity(
+    "part": Key.text("The part that is the bolt, where it is meshed."),
+    "diameter": Key.quantity("m", "Diameter of the shank; with material, the bolt has stiffness and mass."),
+    "pitch": Key.quantity(
         "m",
         (
             "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(P/2pi + "
             "0.577 d2 mu + 0.65 d mu) of ISO 16047."
         ),
     ),
-    "thread_friction": number("Coefficient of friction in the thread."),
-    "head_friction": number("Coefficient of friction under the head."),
-    "preload": own(
+    "thread_friction": Key.number("Coefficient of friction in the thread."),
+    "head_friction": Key.number("Coefficient of friction under the head."),
+    "preload": Key(
         "quantity [N], or a list that rises",
         one_or_more(QUANTITY),
         'One force or several that rise, for example ["6 kN", "12 kN"].',
         read=lambda value, name: _rising(value, name, "N", "12 kN"),
         unit="N",
     ),
-    "torque": own(
+    "torque": Key(
         "quantity [N*m], or a list that rises",
         one_or_more(QUANTITY),
         "One tightening torque or several that rise, in place of preload.",
         read=lambda value, name: _rising(value, name, "N m", "20 N m"),
         unit="N*m",
     ),
-    "nut_factor": number("K of F = T/(K d)."),
-    "grade": text(
+    "nut_factor": Key.number("K of F = T/(K d)."),
+    "grade": Key.text(
         'Property class of ISO 898-1, for example "8.8"; compares the preload with the proof load.',
         examples=lambda: PROOF,
     ),
-    "thread": text('Thread, for example "M8x1", where it is not the coarse one of the diameter.'),
-    "material": text("Material of the shank.", examples=lambda: CATALOGUE),
+    "thread": Key.text('Thread, for example "M8x1", where it is not the coarse one of the diameter.'),
+    "material": Key.text("Material of the shank.", examples=lambda: CATALOGUE),
     "washer": Inner(
         says="Washers under head and nut together.",
         many=True,
         keys={
-            "outer": quantity("m", "Outer diameter.", REQUIRED),
-            "inner": quantity("m", "Inner diameter.", REQUIRED),
-            "thickness": quantity("m", "Thickness.", REQUIRED),
-            "material": text("Material.", REQUIRED, examples=lambda: CATALOGUE),
+            "outer": Key.quantity("m", "Outer diameter.", REQUIRED),
+            "inner": Key.quantity("m", "Inner diameter.", REQUIRED),
+            "thickness": Key.quantity("m", "Thickness.", REQUIRED),
+            "material": Key.text("Material.", REQUIRED, examples=lambda: CATALOGUE),
         },
     ),
-    "seat": own(
+    "seat": Key(
         'inner and outer diameter, for example ["8.4 mm", "16 mm"]',
         listed(QUANTITY, 2, 2),
         ("Inner and outer diameter of the ring that is pressed; the full face where left out and no at is given."),
         read=_ring,
         unit="m",
     ),
-    "head_mass": quantity("kg", "Mass of the head; of a hexagon head of the diameter where left out."),
-    "nut_mass": quantity(
+    "head_mass": Key.quantity("kg", "Mass of the head; of a hexagon head of the diameter where left out."),
+    "nut_mass": Key.quantity(
         "kg", "Mass of the nut; of a hexagon nut of the diameter where left out, none in a tapped hole."
     ),
-    "engaged": quantity(
+    "engaged": Key.quantity(
         "m",
         (
             "Length of the thread in a tapped hole, whose wall is the second face; 1.5 diameters, or "
             "the depth of the hole, where left out."
         ),
     ),
-    "shank": quantity(
+    "shank": Key.quantity(
         "m",
         (
             "Length of the plain shank under the head. Where left out: 0, a thread up to the head; "
@@ -264,5 +252,5 @@ BOLT: Declared = {
         ),
         positive=False,
     ),
-    "head": text("The head of the screw.", "hexagon", ("hexagon", "socket")),
+    "head": Key.text("The head of the screw.", "hexagon", ("hexagon", "socket")),
 }

@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 from faying.bolt.tightening import tightening
 from faying.errors import InputError
-from faying.study.declaration.declared import QUANTITY, WORDS, Declared, Key, listed, one_or_more, own, quantity, text
+from faying.study.declaration.declared import QUANTITY, WORDS, Declared, Key, listed, one_or_more
 from faying.study.declaration.reader import Table
-from faying.study.declaration.values import quantity as read_quantity
+from faying.study.declaration.values import quantity
 
 MOST_FACTOR = 10.0  # greatest tightening factor that is not a slip of the pen
 
@@ -119,7 +119,7 @@ def _between(low: float, high: float) -> Any:
 
 
 def _not_negative(value: Any, name: str) -> float:
-    force = float(read_quantity(value, "N", name, positive=False))
+    force = float(quantity(value, "N", name, positive=False))
     if force < 0:
         raise InputError(f'{name} = "{value}" should be 0 or more')
     return force
@@ -129,7 +129,7 @@ def _axial(value: Any, name: str) -> tuple[float, float]:
     items = value if isinstance(value, list) else ["0 N", value]
     if len(items) != 2:
         raise InputError(f'{name} = {value!r} should be one load or the least and the greatest: ["0 kN", "4 kN"]')
-    low, high = (float(read_quantity(one, "N", name, positive=False)) for one in items)
+    low, high = (float(quantity(one, "N", name, positive=False)) for one in items)
     if high < low or high < 0:
         raise InputError(f"{name} = {value!r}: the second load must be the greater, and pull the parts apart")
     return low, high
@@ -138,12 +138,12 @@ def _axial(value: Any, name: str) -> tuple[float, float]:
 def _number(low: float, high: float, says: str, default: float | None = None) -> Key:
     """A number from the lower to the higher."""
     schema = {"type": "number", "minimum": low, "maximum": high}
-    return own(f"a number from {low:g} to {high:g}", schema, says, default, read=_between(low, high))
+    return Key(f"a number from {low:g} to {high:g}", schema, says, default, read=_between(low, high))
 
 
 BOLT_SHEET: Declared = {
-    "bolt": text("The bolt; all that no other table names where left out."),
-    "tightening": text(
+    "bolt": Key.text("The bolt; all that no other table names where left out."),
+    "tightening": Key.text(
         'Way of tightening, as of [uncertain] preload; "torque wrench, friction estimated" where '
         "left out and nothing scatters."
     ),
@@ -157,7 +157,7 @@ BOLT_SHEET: Declared = {
     "slip_friction": _number(
         0.02, 2.0, "Coefficient of friction of the clamped joint; the least of its joints where left out."
     ),
-    "load": own(
+    "load": Key(
         "the name of a [[load]], or a list of them",
         one_or_more(WORDS),
         (
@@ -169,7 +169,7 @@ BOLT_SHEET: Declared = {
         (),
         read=_names,
     ),
-    "axial": own(
+    "axial": Key(
         "quantity [N], or the least and the greatest",
         {"anyOf": [QUANTITY, listed(QUANTITY, 2, 2)]},
         (
@@ -180,30 +180,30 @@ BOLT_SHEET: Declared = {
         unit="N",
     ),
     "introduction": _number(0.0, 1.0, "Load introduction factor n, from 0 to 1; 1 is a load at the seats.", 1.0),
-    "transverse": own(
+    "transverse": Key(
         "quantity [N], 0 or more",
         QUANTITY,
         "Working load across the bolt, which friction carries.",
         read=_not_negative,
         unit="N",
     ),
-    "clamp": own(
+    "clamp": Key(
         "quantity [N], 0 or more",
         QUANTITY,
         "Clamp load that is asked for, of a seal for example.",
         read=_not_negative,
         unit="N",
     ),
-    "embedding": quantity(
+    "embedding": Key.quantity(
         "m",
         (
             "Embedding of thread, seats and joints together; the guide value of VDI 2230 where left "
             "out and scans give a roughness."
         ),
     ),
-    "thermal_loss": quantity("N", "Preload that temperature takes; negative where it adds some.", positive=False),
-    "shear_strength": quantity("Pa", "Shear strength of the part that is tapped."),
-    "rolled": text(
+    "thermal_loss": Key.quantity("N", "Preload that temperature takes; negative where it adds some.", positive=False),
+    "shear_strength": Key.quantity("Pa", "Shear strength of the part that is tapped."),
+    "rolled": Key.text(
         "Whether the thread is rolled before or after heat treatment.",
         "before",
         ("before", "after"),

@@ -6,9 +6,9 @@ from typing import Any
 from faying.bolt.dowel import Dowel
 from faying.errors import InputError
 from faying.materials import CATALOGUE, Material
-from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, listed, own, quantity, text
+from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Key, listed
 from faying.study.declaration.reader import Table
-from faying.study.declaration.values import point as read_point
+from faying.study.declaration.values import point
 from faying.study.keys.face import several_faces, several_names
 from faying.study.keys.material import named_material
 
@@ -39,18 +39,18 @@ def _dowel(table: Table, index: int, materials: Mapping[str, Material]) -> Dowel
 def _ends(value: Any, name: str) -> tuple[tuple[float, ...], ...]:
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(f"{name} = {value!r} should be a list of two points, where the pin begins and where it ends")
-    first, last = (tuple(read_point(one, f"{name}[{k}]")) for k, one in enumerate(value, 1))
+    first, last = (tuple(point(one, f"{name}[{k}]")) for k, one in enumerate(value, 1))
     if first == last:
         raise InputError(f"{name}: both ends are one point; give the points where the pin begins and where it ends")
     return first, last
 
 
 DOWEL: Declared = {
-    "name": text("What tables call it.", "dowel 1"),
+    "name": Key.text("What tables call it.", "dowel 1"),
     "walls": several_faces("The walls of the holes that it fits without play, one on each part.", REQUIRED),
-    "material": text("Material of the pin.", REQUIRED, examples=lambda: CATALOGUE),
-    "diameter": quantity("m", "Diameter of the pin; that of its first hole where left out."),
-    "ends": own(
+    "material": Key.text("Material of the pin.", REQUIRED, examples=lambda: CATALOGUE),
+    "diameter": Key.quantity("m", "Diameter of the pin; that of its first hole where left out."),
+    "ends": Key(
         'two points, for example [["0 mm", "0 mm", "0 mm"], ["0 mm", "0 mm", "20 mm"]]',
         listed(listed(QUANTITY, 3, 3), 2, 2),
         "Points of the axis where the pin begins and ends; where its holes do, if left out.",

@@ -8,23 +8,9 @@ import numpy as np
 from faying.errors import InputError
 from faying.geometry.face_facts import Point
 from faying.geometry.selectors import AXES, WITHIN, Selector
-from faying.study.declaration.declared import (
-    REQUIRED,
-    WHOLE,
-    WORDS,
-    Declared,
-    Key,
-    listed,
-    own,
-    point,
-    quantity,
-    text,
-    truth,
-)
+from faying.study.declaration.declared import REQUIRED, WHOLE, WORDS, Declared, Key, listed
 from faying.study.declaration.reader import Table
-from faying.study.declaration.values import direction as read_direction
-from faying.study.declaration.values import text as read_text
-from faying.study.declaration.values import whole_number
+from faying.study.declaration.values import direction, text, whole_number
 
 FORM = '"upper.joint", or {part = "upper", normal = "+z"}'
 
@@ -59,7 +45,7 @@ def face_name(table: Table, key: str, label: str) -> str | None:
         if selector is not None:
             table.faults.selectors[label] = selector
         return label
-    name: str | None = table.take(key, read_text)
+    name: str | None = table.take(key, text)
     return name
 
 
@@ -122,7 +108,7 @@ def _normal(value: Any, name: str) -> Point:
         return AXES[value]
     if not isinstance(value, list):
         raise InputError(f'{name} = {value!r} should be an axis such as "+z", or three numbers such as [0, 0, 1]')
-    along = np.array(read_direction(value, name))
+    along = np.array(direction(value, name))
     x, y, z = along / np.linalg.norm(along)
     return float(x), float(y), float(z)
 
@@ -137,17 +123,17 @@ def _numbers(value: Any, name: str) -> int | tuple[int, ...]:
 
 
 SELECTOR: Declared = {
-    "part": text("The part.", REQUIRED),
-    "normal": own(
+    "part": Key.text("The part.", REQUIRED),
+    "normal": Key(
         'an axis such as "+z", or three numbers such as [0, 0, 1]',
         {"anyOf": [{"enum": list(AXES)}, listed({"type": "number"}, 3, 3)]},
         ('Outward normal of a plane, within 1 degree: "+x", "-x", "+y", "-y", "+z", "-z" or three numbers.'),
         read=_normal,
     ),
-    "touching": text("The part that the face touches, or comes as near to as geometry.snap says."),
-    "nearest": point("A point; of the faces for which the rest holds, the nearest."),
-    "within": quantity("m", "The farthest that this point may lie from the face; 1 mm where left out."),
-    "number": own(
+    "touching": Key.text("The part that the face touches, or comes as near to as geometry.snap says."),
+    "nearest": Key.point("A point; of the faces for which the rest holds, the nearest."),
+    "within": Key.quantity("m", "The farthest that this point may lie from the face; 1 mm where left out."),
+    "number": Key(
         "a whole number from 1 to 1,000,000, or a list of them",
         {"anyOf": [WHOLE, listed(WHOLE, 1)]},
         (
@@ -156,19 +142,19 @@ SELECTOR: Declared = {
         ),
         read=_numbers,
     ),
-    "all": truth("Several faces that fit count as one."),
+    "all": Key.truth("Several faces that fit count as one."),
 }
 FACE = {"anyOf": [WORDS, {"$ref": "#/$defs/selector"}]}
 
 
 def one_face(says: str, default: Any = None) -> Key:
     """A face, by its name or by a selector; `face_name` reads it."""
-    return own(f"a face: {FORM}", FACE, says, default)
+    return Key(f"a face: {FORM}", FACE, says, default)
 
 
 def two_faces(says: str) -> Key:
     """Two faces, each by its name or by a selector; `face_names` reads them."""
-    return own(
+    return Key(
         'a list of 2 names, for example ["upper.joint", "lower.joint"], or of selectors such as '
         '{part = "upper", touching = "lower"}',
         listed(FACE, 2, 2),
@@ -179,7 +165,7 @@ def two_faces(says: str) -> Key:
 
 def several_faces(says: str, default: Any = None) -> Key:
     """Two faces or more, each by its name or by a selector; `several_names` reads them."""
-    return own(
+    return Key(
         'a list of names, for example ["cover.pin", "frame.pin"], or of selectors such as {part = "cover", number = 7}',
         listed(FACE, 2),
         says,

@@ -4,18 +4,7 @@ from typing import Any
 
 from faying.form.form import PARAMETERS, Form
 from faying.form.gap_map import FaceMap, GapMap, read_gap_map, read_heights
-from faying.study.declaration.declared import (
-    REQUIRED,
-    Declared,
-    Inner,
-    direction,
-    file,
-    length_unit,
-    of_parameter,
-    point,
-    text,
-    truth,
-)
+from faying.study.declaration.declared import REQUIRED, Declared, Inner, Key
 from faying.study.declaration.reader import Table
 from faying.study.keys.waviness import WAVINESS, read_waviness
 
@@ -63,25 +52,27 @@ def _face(table: Table) -> FaceMap | None:
 
 
 GAP: Declared = {
-    "file": file("Table of x, y, gap.", REQUIRED),
-    "xy_unit": length_unit("Unit of x and y, where the heading of the file states none."),
-    "gap_unit": text("Unit of the gap, where the heading of the file states none."),
-    "origin": point("Point of the structure at which x = y = 0.", (0.0, 0.0, 0.0)),
-    "x_axis": direction("Direction of x.", (1.0, 0.0, 0.0)),
-    "y_axis": direction("Direction of y.", (0.0, 1.0, 0.0)),
+    "file": Key.file("Table of x, y, gap.", REQUIRED),
+    "xy_unit": Key.length_unit("Unit of x and y, where the heading of the file states none."),
+    "gap_unit": Key.text("Unit of the gap, where the heading of the file states none."),
+    "origin": Key.point("Point of the structure at which x = y = 0.", (0.0, 0.0, 0.0)),
+    "x_axis": Key.direction("Direction of x.", (1.0, 0.0, 0.0)),
+    "y_axis": Key.direction("Direction of y.", (0.0, 1.0, 0.0)),
 }
 HEIGHTS: Declared = {
-    "file": file("Scan, or table of x, y, z.", REQUIRED),
-    "xy_unit": length_unit("Unit of x and y, where the file states none."),
-    "z_unit": length_unit("Unit of the heights, where the file states none."),
-    "origin": point("Point at which x = y = 0; the middle of the map lies on the middle of the joint where left out."),
-    "x_axis": direction("Direction of x; the longer side of the face where left out."),
-    "y_axis": direction("Direction of y; as seen from outside the face where left out."),
+    "file": Key.file("Scan, or table of x, y, z.", REQUIRED),
+    "xy_unit": Key.length_unit("Unit of x and y, where the file states none."),
+    "z_unit": Key.length_unit("Unit of the heights, where the file states none."),
+    "origin": Key.point(
+        "Point at which x = y = 0; the middle of the map lies on the middle of the joint where left out."
+    ),
+    "x_axis": Key.direction("Direction of x; the longer side of the face where left out."),
+    "y_axis": Key.direction("Direction of y; as seen from outside the face where left out."),
 }
 FORM: Declared = {
-    "flat": truth("The faces are flat: neither form nor waves. Stands alone."),
-    **{name: of_parameter(parameter) for name, parameter in PARAMETERS.items()},
-    "along": direction("Direction of the longer side, where the face is as long as wide."),
+    "flat": Key.truth("The faces are flat: neither form nor waves. Stands alone."),
+    **{name: Key.of_parameter(parameter) for name, parameter in PARAMETERS.items()},
+    "along": Key.direction("Direction of the longer side, where the face is as long as wide."),
     "gap": Inner(says="A measured gap between the faces.", keys=GAP),
     "first": Inner(says="Measured heights of the first face.", keys=HEIGHTS),
     "second": Inner(says="Measured heights of the second face.", keys=HEIGHTS),

@@ -10,19 +10,7 @@ from faying.errors import InputError
 from faying.fe.mesh import Mesh
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import Selector, chosen, points_of
-from faying.study.declaration.declared import (
-    NAME,
-    REQUIRED,
-    WORDS,
-    Declared,
-    Inner,
-    file,
-    length_unit,
-    listed,
-    own,
-    quantity,
-    text,
-)
+from faying.study.declaration.declared import NAME, REQUIRED, WORDS, Declared, Inner, Key, listed
 from faying.study.declaration.reader import Faults, Table
 from faying.study.keys.face import SELECTOR, read_selector
 
@@ -147,11 +135,11 @@ def with_faces(mesh: Mesh, spec: GeometryChoice) -> Mesh:
 
 
 GEOMETRY: Declared = {
-    "step": file("STEP file; its solids and faces carry names.", REQUIRED),
-    "size": quantity("m", "Largest element.", REQUIRED),
+    "step": Key.file("STEP file; its solids and faces carry names.", REQUIRED),
+    "size": Key.quantity("m", "Largest element.", REQUIRED),
     "face_size": Inner(
         says="Smaller elements on some faces.",
-        keys={NAME: quantity("m", "Largest element on the face NAME.", REQUIRED)},
+        keys={NAME: Key.quantity("m", "Largest element on the face NAME.", REQUIRED)},
     ),
     "face": Inner(
         says=(
@@ -167,8 +155,8 @@ GEOMETRY: Declared = {
             )
         },
     ),
-    "snap": quantity("m", "Faces of a joint whose largest distance is this or less count as touching.", 0.0),
-    "leave_out": own(
+    "snap": Key.quantity("m", "Faces of a joint whose largest distance is this or less count as touching.", 0.0),
+    "leave_out": Key(
         'a list of parts, for example ["dowel 1", "dowel 2"]',
         listed(WORDS, 0),
         (
@@ -178,10 +166,10 @@ GEOMETRY: Declared = {
         (),
         read=_parts,
     ),
-    "mesh": file("Mesh file, in place of step and size.", REQUIRED),
-    "unit": length_unit('Unit of the coordinates of the mesh file, for example "mm"; needed with mesh.'),
+    "mesh": Key.file("Mesh file, in place of step and size.", REQUIRED),
+    "unit": Key.length_unit('Unit of the coordinates of the mesh file, for example "mm"; needed with mesh.'),
     "sets": Inner(
         says="Element sets of the mesh file that are the parts, where its bodies are not.",
-        keys={NAME: text("Element set of the part NAME, or several joined by a plus sign.", REQUIRED)},
+        keys={NAME: Key.text("Element set of the part NAME, or several joined by a plus sign.", REQUIRED)},
     ),
 }

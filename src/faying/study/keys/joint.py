@@ -6,7 +6,7 @@ from typing import Any, Literal
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.form.form import Form
-from faying.study.declaration.declared import NUMBER, Declared, Inner, own, quantity, text, truth, within
+from faying.study.declaration.declared import NUMBER, Declared, Inner, Key
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import MOST_FRICTION
 from faying.study.keys.face import face_names, two_faces
@@ -97,13 +97,13 @@ def read_joints(top: Table) -> tuple[tuple[JointChoice, ...], tuple[JointChoice,
 JOINT: Declared = {
     "surface": Inner(says="A surface for this joint alone, with the keys of [surface].", keys=SURFACE, either=True),
     "law": Inner(says="A law for this joint alone, with the keys of [law].", keys=LAW.keys, models=LAW.models),
-    "name": text("What tables call it.", "joint 1"),
-    "bonded": truth(
+    "name": Key.text("What tables call it.", "joint 1"),
+    "bonded": Key.truth(
         "The faces are welded or glued: their nodes are one. The joint has no pressure and no "
         "law, and takes no other key but name and faces."
     ),
     "faces": two_faces("The two faces; the first is the rough one."),
-    "springs": text(
+    "springs": Key.text(
         (
             "Springs per area on both faces, or one at each pair of nodes, as in the JK paper; the "
             "latter depends on the mesh."
@@ -111,7 +111,7 @@ JOINT: Declared = {
         "per-area",
         ("per-area", "per-node"),
     ),
-    "tangential": own(
+    "tangential": Key(
         '"law", "mindlin", or k_t/k_n, above 0 and at most 2',
         {"anyOf": [NUMBER, {"enum": ["law", "mindlin"]}]},
         (
@@ -121,7 +121,7 @@ JOINT: Declared = {
         ),
         read=_tangential,
     ),
-    "friction": within(
+    "friction": Key.within(
         0,
         MOST_FRICTION,
         (
@@ -129,6 +129,6 @@ JOINT: Declared = {
             "sticks everywhere where left out."
         ),
     ),
-    "search_distance": quantity("m", "Largest distance of two faces that still make a joint."),
+    "search_distance": Key.quantity("m", "Largest distance of two faces that still make a joint."),
     "form": Inner(says="Form of the two faces together, as a gap. What is given adds up.", keys=FORM),
 }

@@ -11,9 +11,9 @@ from faying.contact.inputs import RoughSurface
 from faying.contact.mates import Mates
 from faying.contact.parameter import TABLE
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
-from faying.study.declaration.declared import WORDS, Inner, Key, of_parameter, own, text
+from faying.study.declaration.declared import WORDS, Inner, Key
 from faying.study.declaration.reader import Table
-from faying.study.declaration.values import text as read_text
+from faying.study.declaration.values import text
 from faying.study.keys.surface import Surface
 
 # D, G and area of a surface are written under [surface], where a scan would give them
@@ -131,21 +131,21 @@ def _of_laws() -> dict[str, dict[str, Key]]:
     for law in laws().values():
         defaults = {one.name: one.default for one in fields(law) if one.default is not MISSING}  # type: ignore[arg-type]
         entries = {name: one for name, one in law.entries().items() if name not in OF_SURFACE and one.unit != TABLE}
-        out[law.name] = {name: of_parameter(one, defaults.get(name)) for name, one in entries.items()}
+        out[law.name] = {name: Key.of_parameter(one, defaults.get(name)) for name, one in entries.items()}
     return out
 
 
 LAW = Inner(
     says="The contact law of all joints without a law of their own.",
     keys={
-        "model": own(
+        "model": Key(
             "text",
             WORDS,
             ('Label of the law; "auto" where left out, which solves the contact on the scan or takes the nearest law.'),
-            read=lambda value, name: find(read_text(value, name)),
+            read=lambda value, name: find(text(value, name)),
             examples=lambda: sorted(label.lower() for label in kinds()),
         ),
-        "counterbody": text("The other body is the part that is there, or rigid.", "part", ("part", "rigid")),
+        "counterbody": Key.text("The other body is the part that is there, or rigid.", "part", ("part", "rigid")),
     },
     models=_of_laws,
 )

@@ -17,22 +17,9 @@ from faying.loads.load import (
     Vector,
     in_order,
 )
-from faying.study.declaration.declared import (
-    QUANTITY,
-    REQUIRED,
-    Declared,
-    Inner,
-    Key,
-    count,
-    listed,
-    own,
-    point,
-    quantity,
-    text,
-)
+from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed
 from faying.study.declaration.reader import Made, Table
-from faying.study.declaration.values import number
-from faying.study.declaration.values import quantity as read_quantity
+from faying.study.declaration.values import number, quantity
 from faying.study.keys.face import face_name, one_face
 
 LENGTH = '["0 mm", "0 mm", "0.1 mm"]'
@@ -104,7 +91,7 @@ def _vector(unit: str) -> Callable[[Any, str], Vector]:
     def convert(value: Any, name: str) -> Vector:
         if not isinstance(value, list) or len(value) != 3:
             raise InputError(f"{name} = {value!r} should be three components, for example {EXAMPLES[unit]}")
-        x, y, z = (read_quantity(one, unit, name, positive=False) for one in value)
+        x, y, z = (quantity(one, unit, name, positive=False) for one in value)
         return x, y, z
 
     return convert
@@ -122,11 +109,11 @@ def _by_name(form: str, read: Callable[[Any, str], float]) -> Callable[[Any, str
 def _three(unit: str, says: str, default: Any = None) -> Key:
     """Three components with units."""
     kind = f"three components, for example {EXAMPLES[unit]}"
-    return own(kind, listed(QUANTITY, 3, 3), says, default, read=_vector(unit), unit=unit)
+    return Key(kind, listed(QUANTITY, 3, 3), says, default, read=_vector(unit), unit=unit)
 
 
 LOAD: Declared = {
-    "name": text("What tables call the case.", REQUIRED),
+    "name": Key.text("What tables call the case.", REQUIRED),
     "force": Inner(
         says="A force and a moment on a face, or a force at a point.",
         many=True,
@@ -134,7 +121,7 @@ LOAD: Declared = {
             "face": one_face("The face, over which the force is spread without stiffening it."),
             "force": _three("N", "Components along x, y and z."),
             "moment": _three("N*m", "Components about x, y and z; on a face alone."),
-            "point": point(
+            "point": Key.point(
                 "Point that the force goes through, also apart from the face; the centre of the face "
                 "where left out. Without a face: the force acts on the node nearest to it."
             ),
@@ -145,7 +132,9 @@ LOAD: Declared = {
         many=True,
         keys={
             "face": one_face("The face.", REQUIRED),
-            "pressure": quantity("Pa", "Above 0 it presses on the face, below 0 it pulls.", REQUIRED, positive=False),
+            "pressure": Key.quantity(
+                "Pa", "Above 0 it presses on the face, below 0 it pulls.", REQUIRED, positive=False
+            ),
         },
     ),
     "displacement": Inner(
@@ -165,16 +154,16 @@ LOAD: Declared = {
             "masses pulls the other way."
         ),
     ),
-    "temperature": own(
+    "temperature": Key(
         CHANGES,
         {"type": "object", "additionalProperties": QUANTITY},
         "Change of temperature since the bolts were tightened, by the name of the part or bolt.",
         {},
-        read=_by_name(CHANGES, lambda value, name: read_quantity(value, "K", name, positive=False)),
+        read=_by_name(CHANGES, lambda value, name: quantity(value, "K", name, positive=False)),
         unit="K",
         allowed=f"{COLDEST:g} K to {WARMEST:g} K",
     ),
-    "combine": own(
+    "combine": Key(
         FACTORS,
         {
             "type": "object",
@@ -185,8 +174,10 @@ LOAD: Declared = {
         read=_by_name(FACTORS, number),
         allowed=f"{-MAX_FACTOR:g} to {MAX_FACTOR:g}",
     ),
-    "after": text("Case from whose state this one starts: its load gives way to this one. The preload where left out."),
-    "increments": count(
+    "after": Key.text(
+        "Case from whose state this one starts: its load gives way to this one. The preload where left out."
+    ),
+    "increments": Key.count(
         "Into how many parts the way to the load is cut where a joint has friction.", 4, most=MAX_INCREMENTS
     ),
 }

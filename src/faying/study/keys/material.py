@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from faying.errors import InputError
 from faying.materials import CATALOGUE, STIFFEST, Material
-from faying.study.declaration.declared import NAME, REQUIRED, Declared, Inner, number, quantity, text, within
+from faying.study.declaration.declared import NAME, REQUIRED, Declared, Inner, Key
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import MOST_FRICTION
 
@@ -56,18 +56,18 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
 
 
 MATERIAL: Declared = {
-    "E": quantity("Pa", "Young's modulus.", REQUIRED),
-    "nu": number("Poisson's ratio, below 0.495 for parts.", REQUIRED),
-    "density": quantity("kg/m^3", "Density.", REQUIRED),
-    "yield_strength": quantity("Pa", "Yield strength; gives the hardness where that is left out."),
-    "hardness": quantity(
+    "E": Key.quantity("Pa", "Young's modulus.", REQUIRED),
+    "nu": Key.number("Poisson's ratio, below 0.495 for parts.", REQUIRED),
+    "density": Key.quantity("kg/m^3", "Density.", REQUIRED),
+    "yield_strength": Key.quantity("Pa", "Yield strength; gives the hardness where that is left out."),
+    "hardness": Key.quantity(
         "Pa",
         (
             "Hardness of the analytic laws of asperities; 2.8 times the yield strength where left "
             "out. Without brinell it is the hardness of every law, the same for spots of every size."
         ),
     ),
-    "brinell": quantity(
+    "brinell": Key.quantity(
         "Pa",
         (
             'Brinell hardness as a pressure: HB 170 is "1.67 GPa". From 1.3 to 7.6 GPa the solved '
@@ -75,14 +75,14 @@ MATERIAL: Declared = {
             "size then have; outside of that, this one number."
         ),
     ),
-    "friction": within(0, MOST_FRICTION, "Static coefficient of friction, for the contact law."),
-    "conductivity": quantity("W/(m*K)", "Thermal conductivity; gives the conductance of joints."),
-    "resistivity": quantity("ohm*m", "Electrical resistivity; gives the conductance of joints."),
-    "bearing_limit": quantity("Pa", "Allowable pressure under a bolt head (p_G of VDI 2230)."),
-    "expansion": quantity(
+    "friction": Key.within(0, MOST_FRICTION, "Static coefficient of friction, for the contact law."),
+    "conductivity": Key.quantity("W/(m*K)", "Thermal conductivity; gives the conductance of joints."),
+    "resistivity": Key.quantity("ohm*m", "Electrical resistivity; gives the conductance of joints."),
+    "bearing_limit": Key.quantity("Pa", "Allowable pressure under a bolt head (p_G of VDI 2230)."),
+    "expansion": Key.quantity(
         "1/K", "Coefficient of linear thermal expansion; a load that changes temperatures needs it.", positive=False
     ),
-    "source": text("Where the numbers come from.", ""),
+    "source": Key.text("Where the numbers come from.", ""),
 }
 MATERIALS = Inner(
     says="Materials of your own, in addition to those of the catalogue.",
@@ -95,7 +95,9 @@ PARTS = Inner(
         NAME: Inner(
             says="The part with that name in the geometry.",
             keys={
-                "material": text("A material of the catalogue or of the study.", REQUIRED, examples=lambda: CATALOGUE)
+                "material": Key.text(
+                    "A material of the catalogue or of the study.", REQUIRED, examples=lambda: CATALOGUE
+                )
             },
         )
     },

@@ -7,25 +7,9 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.joint.modal import MAX_MODES, SOLVERS, ModesChoice
-from faying.study.declaration.declared import (
-    QUANTITY,
-    REQUIRED,
-    WORDS,
-    Declared,
-    Inner,
-    count,
-    direction,
-    listed,
-    own,
-    point,
-    quantity,
-    text,
-    truth,
-    within,
-)
+from faying.study.declaration.declared import QUANTITY, REQUIRED, WORDS, Declared, Inner, Key, listed
 from faying.study.declaration.reader import Table
-from faying.study.declaration.values import MOST_LOSS
-from faying.study.declaration.values import quantity as read_quantity
+from faying.study.declaration.values import MOST_LOSS, quantity
 
 MOST_POINTS, MOST_PASSES = 1_000_000, 100
 Point = tuple[float, float, float]
@@ -42,7 +26,7 @@ def _levels(value: Any, name: str) -> tuple[float, ...]:
     """Accelerations, rising; none where empty."""
     if not isinstance(value, list):
         raise InputError(f'{name} = {value!r} should be a list, such as ["0.1 m/s^2", "1 m/s^2", "10 m/s^2"], or []')
-    found = tuple(read_quantity(one, "m/s^2", name) for one in value)
+    found = tuple(quantity(one, "m/s^2", name) for one in value)
     if any(b <= a for a, b in pairwise(found)):
         raise InputError(f"{name} = {value!r}: levels must rise")
     return found
@@ -98,8 +82,8 @@ def read_order(table: Table, names: Sequence[str]) -> tuple[int, ...] | None:
 
 
 MODES: Declared = {
-    "count": count("Number of elastic modes.", 10, most=MAX_MODES),
-    "damping": text(
+    "count": Key.count("Number of elastic modes.", 10, most=MAX_MODES),
+    "damping": Key.text(
         (
             "Loss of the joints: the same energy per cycle at every frequency, or dampers as in the "
             "JK paper, which depend on the mesh."
@@ -107,7 +91,7 @@ MODES: Declared = {
         "hysteretic",
         ("hysteretic", "viscous"),
     ),
-    "solver": text(
+    "solver": Key.text(
         (
             'Factorisation; the fastest one found where left out. "mpi" is none, but multigrid over '
             "as many processes as FAYING_MPI_PROCESSES says, else as there are cores."
@@ -115,8 +99,8 @@ MODES: Declared = {
         None,
         SOLVERS,
     ),
-    "shift_frequency": quantity("Hz", "Frequency about which modes are sought; chosen where left out."),
-    "levels": own(
+    "shift_frequency": Key.quantity("Hz", "Frequency about which modes are sought; chosen where left out."),
+    "levels": Key(
         'a list, such as ["0.1 m/s^2", "1 m/s^2", "10 m/s^2"], or []',
         listed(QUANTITY, 0),
         ("Accelerations of the point that moves most, rising, at which damping and frequency are found; [] for none."),
@@ -124,23 +108,23 @@ MODES: Declared = {
         read=_levels,
         unit="m/s^2",
     ),
-    "intervals": truth(
+    "intervals": Key.truth(
         "Whether each frequency has its interval, and waves are drawn where faces have them.",
         True,
     ),
 }
 TIGHTENING: Declared = {
-    "order": own("a list that names every bolt", listed(WORDS, 1), "The names of all bolts, in their order.", REQUIRED),
-    "passes": count("How often the order is gone through.", 1, most=MOST_PASSES),
+    "order": Key("a list that names every bolt", listed(WORDS, 1), "The names of all bolts, in their order.", REQUIRED),
+    "passes": Key.count("How often the order is gone through.", 1, most=MOST_PASSES),
 }
-PLACE: Declared = {"point": point("The point.", REQUIRED), "direction": direction("The direction.", REQUIRED)}
+PLACE: Declared = {"point": Key.point("The point.", REQUIRED), "direction": Key.direction("The direction.", REQUIRED)}
 RESPONSE: Declared = {
-    "from": quantity("Hz", "First frequency.", REQUIRED),
-    "to": quantity("Hz", "Last frequency.", REQUIRED),
+    "from": Key.quantity("Hz", "First frequency.", REQUIRED),
+    "to": Key.quantity("Hz", "Last frequency.", REQUIRED),
     **{
         side: Inner(says=f"A point and a direction of a {what}.", keys=PLACE, many=True, required=True)
         for side, what in (("input", "force"), ("output", "motion"))
     },
-    "points": count("Number of frequencies.", 1000, most=MOST_POINTS),
-    "structural_loss": within(0, MOST_LOSS, "Loss factor of the parts themselves.", 0.0),
+    "points": Key.count("Number of frequencies.", 1000, most=MOST_POINTS),
+    "structural_loss": Key.within(0, MOST_LOSS, "Loss factor of the parts themselves.", 0.0),
 }

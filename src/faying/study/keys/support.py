@@ -4,7 +4,7 @@ from typing import Any
 
 from faying.errors import InputError
 from faying.joint.attachments import PointMass, Support
-from faying.study.declaration.declared import REQUIRED, Declared, listed, own, point, quantity
+from faying.study.declaration.declared import REQUIRED, Declared, Key, listed
 from faying.study.declaration.reader import Table
 from faying.study.keys.face import face_name, one_face
 
@@ -39,18 +39,18 @@ def _axes(value: Any, name: str) -> tuple[str, ...]:
 
 SUPPORT: Declared = {
     "face": one_face("The face.", REQUIRED),
-    "directions": own(
+    "directions": Key(
         'some of "x", "y", "z" in a list',
         listed({"enum": ["x", "y", "z"]}, 1, 3),
         "Directions in which it is held.",
         ("x", "y", "z"),
         read=_axes,
     ),
-    "stiffness": quantity("Pa/m", "Stiffness per area of an elastic foundation; rigid where left out."),
+    "stiffness": Key.quantity("Pa/m", "Stiffness per area of an elastic foundation; rigid where left out."),
 }
 MASS: Declared = {
-    "mass": quantity("kg", "The mass.", REQUIRED),
+    "mass": Key.quantity("kg", "The mass.", REQUIRED),
     "face": one_face("The face that carries it."),
-    "point": point("The point that carries it, in place of a face."),
-    "offset": point("From there to its centre of gravity.", (0.0, 0.0, 0.0)),
+    "point": Key.point("The point that carries it, in place of a face."),
+    "offset": Key.point("From there to its centre of gravity.", (0.0, 0.0, 0.0)),
 }

@@ -10,7 +10,7 @@ from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.two_faces import COUNTERS, Counter, RoughPair
 from faying.errors import InputError
 from faying.form.waviness import ScanWaves
-from faying.study.declaration.declared import QUANTITY, Declared, file, length_unit, number, own, quantity, text
+from faying.study.declaration.declared import QUANTITY, Declared, Key
 from faying.study.declaration.reader import Table
 from faying.surface.estimators.table import METHODS
 from faying.surface.files.read import read_scan
@@ -188,24 +188,24 @@ NO_SURFACE = Surface(faces=None, origin="none: the contact law brings its own he
 
 LENGTHS = 'text, for example "4 mm x 3 mm"'
 SURFACE: Declared = {
-    "scan": file("Scan of one face: X3P, text, or an instrument's format."),
-    "xy_unit": length_unit("Unit of x and y, where the file states none."),
-    "z_unit": length_unit("Unit of the heights, where the file states none."),
-    "size": own(
+    "scan": Key.file("Scan of one face: X3P, text, or an instrument's format."),
+    "xy_unit": Key.length_unit("Unit of x and y, where the file states none."),
+    "z_unit": Key.length_unit("Unit of the heights, where the file states none."),
+    "size": Key(
         LENGTHS, QUANTITY, "Size of the scan, where the file states neither size nor spacing.", read=_lengths, unit="m"
     ),
-    "spacing": own(
+    "spacing": Key(
         LENGTHS,
         QUANTITY,
         "Spacing of the points, where the file states neither size nor spacing.",
         read=_lengths,
         unit="m",
     ),
-    "method": text("Estimator of D and G.", "psd", examples=lambda: METHODS),
-    "D": number("Fractal dimension of both faces together, between 2 and 3."),
-    "G": quantity("m", "Fractal roughness of both faces together, in the convention of Yan and Komvopoulos."),
-    "scan_area": quantity("m^2", "Area of the scan that D and G come from."),
-    "counter": text(
+    "method": Key.text("Estimator of D and G.", "psd", examples=lambda: METHODS),
+    "D": Key.number("Fractal dimension of both faces together, between 2 and 3."),
+    "G": Key.quantity("m", "Fractal roughness of both faces together, in the convention of Yan and Komvopoulos."),
+    "scan_area": Key.quantity("m^2", "Area of the scan that D and G come from."),
+    "counter": Key.text(
         (
             'The other face: "same" (alike in its statistics, unrelated point by point), "smooth", '
             "or the file of its scan."

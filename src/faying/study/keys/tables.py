@@ -1,6 +1,6 @@
 """All tables of a study."""
 
-from faying.study.declaration.declared import Declared, Inner, text
+from faying.study.declaration.declared import Declared, Inner, Key
 from faying.study.keys.alternative import ALTERNATIVE
 from faying.study.keys.backbone import BACKBONE
 from faying.study.keys.bolt import BOLT
@@ -17,7 +17,7 @@ from faying.study.keys.surface import SURFACE
 from faying.study.keys.test import TEST
 
 STUDY: Declared = {
-    "title": text("What tables and report call the study.", "untitled"),
+    "title": Key.text("What tables and report call the study.", "untitled"),
     "material": MATERIALS,
     "geometry": Inner(
         says="The parts: a STEP file to mesh, or a mesh file of another program.",

@@ -10,23 +10,11 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.joint.preload_case import preload_index
-from faying.study.declaration.declared import (
-    QUANTITY,
-    REQUIRED,
-    WORDS,
-    Declared,
-    file,
-    listed,
-    number,
-    own,
-    quantity,
-    text,
-)
+from faying.study.declaration.declared import QUANTITY, REQUIRED, WORDS, Declared, Key, listed
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import direction as read_direction
-from faying.study.declaration.values import point as read_point
+from faying.study.declaration.values import point, text
 from faying.study.declaration.values import quantity as read_quantity
-from faying.study.declaration.values import text as read_text
 from faying.typing import Array, Index
 
 QUANTITIES = ("receptance", "mobility", "accelerance")
@@ -172,11 +160,11 @@ def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:
 def _points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
     if not isinstance(value, list) or not value:
         raise InputError(f"{name} should be a list of points, each three lengths")
-    return tuple(read_point(one, name) for one in value)
+    return tuple(point(one, name) for one in value)
 
 
 def _axis(value: Any, name: str) -> str:
-    return read_text(value, name, ("x", "y", "z"))
+    return text(value, name, ("x", "y", "z"))
 
 
 def _above_zero(most: float) -> Callable[[Any, str], float]:
@@ -196,47 +184,47 @@ NUMBERS = "one list for each preload, a number for each frequency"
 EACH = listed(listed(QUANTITY, 1), 1)
 LOSSES = listed(listed({"type": ["number", "string"]}, 1), 1)
 TEST: Declared = {
-    "frequencies": own(FREQUENCIES, EACH, "Measured frequencies, a list for each preload.", REQUIRED, unit="Hz"),
-    "source": text("Words for the report.", ""),
-    "loss_factors": own(
+    "frequencies": Key(FREQUENCIES, EACH, "Measured frequencies, a list for each preload.", REQUIRED, unit="Hz"),
+    "source": Key.text("Words for the report.", ""),
+    "loss_factors": Key(
         NUMBERS,
         LOSSES,
         ("Measured loss factors, a number for each frequency, nan for none: `faying identify` uses them."),
     ),
-    "damping_ratios": own(
+    "damping_ratios": Key(
         NUMBERS, LOSSES, "Measured damping ratios, in place of loss factors, which are twice as much."
     ),
-    "published": own(FREQUENCIES, EACH, "Frequencies of a published model, a list for each preload.", unit="Hz"),
-    "published_name": text("What tables call that model.", "published"),
-    "kind": text("Whether the frequencies were measured or are those of a model.", "test", ("test", "model")),
-    "direction": own(
+    "published": Key(FREQUENCIES, EACH, "Frequencies of a published model, a list for each preload.", unit="Hz"),
+    "published_name": Key.text("What tables call that model.", "published"),
+    "kind": Key.text("Whether the frequencies were measured or are those of a model.", "test", ("test", "model")),
+    "direction": Key(
         'three numbers, for example [1, 0, 0]; with file "x", "y" or "z"',
         {"anyOf": [listed({"type": "number"}, 3, 3), {"enum": ["x", "y", "z"]}]},
         "Direction of the hammer or sensor.",
         REQUIRED,
         read=read_direction,
     ),
-    "points": own(
+    "points": Key(
         "a list of points, each three lengths; with file the name of a table of them",
         {"anyOf": [listed(listed(QUANTITY, 3, 3), 1), WORDS]},
         "Where the hammer hits or the sensor sits.",
         unit="m",
     ),
-    "threshold": number("Share of the largest motion from which the test sees a mode.", 0.1),
-    "file": file("Universal file of modes or FRFs, in place of frequencies.", REQUIRED),
-    "load": own("quantity [N]", QUANTITY, "The preload to compare at; the last where left out.", unit="N"),
-    "frame": file("Table of points of the test with their place in the model."),
-    "length_unit": text("Unit of the positions, where the file states none."),
-    "quantity": text("What the FRFs are, where the file does not say.", None, QUANTITIES),
-    "tolerance": quantity("m", "Largest distance between a point of the test and the outline."),
-    "least_mac": own(
+    "threshold": Key.number("Share of the largest motion from which the test sees a mode.", 0.1),
+    "file": Key.file("Universal file of modes or FRFs, in place of frequencies.", REQUIRED),
+    "load": Key("quantity [N]", QUANTITY, "The preload to compare at; the last where left out.", unit="N"),
+    "frame": Key.file("Table of points of the test with their place in the model."),
+    "length_unit": Key.text("Unit of the positions, where the file states none."),
+    "quantity": Key.text("What the FRFs are, where the file does not say.", None, QUANTITIES),
+    "tolerance": Key.quantity("m", "Largest distance between a point of the test and the outline."),
+    "least_mac": Key(
         "a plain number above 0 and at most 1, for example 0.3",
         {"type": "number"},
         "Least MAC of a pair of modes.",
         0.5,
         read=_above_zero(1.0),
     ),
-    "greatest_shift": own(
+    "greatest_shift": Key(
         "a plain number above 0, for example 0.3",
         {"type": "number"},
         "Greatest relative difference of frequency in a pair.",

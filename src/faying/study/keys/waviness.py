@@ -5,7 +5,7 @@ from typing import Any
 from faying.contact.parameter import Parameter
 from faying.form.machining import GAUSSIAN, PROCESSES, RMS_OF_FLATNESS
 from faying.form.waviness import OF_WAVES, PARAMETERS, Waviness
-from faying.study.declaration.declared import Declared, of_parameter, text
+from faying.study.declaration.declared import Declared, Key
 from faying.study.declaration.reader import Table
 from faying.units import show
 
@@ -50,12 +50,12 @@ def _size(way: str, value: Any) -> dict[str, Any]:
 
 
 WAVINESS: Declared = {
-    **{name: of_parameter(parameter) for name, parameter in SIZES.items()},
-    "process": text(
+    **{name: Key.of_parameter(parameter) for name, parameter in SIZES.items()},
+    "process": Key.text(
         "What made the faces; the size is the middle of the range of Wa that the process leaves.",
         None,
         tuple(PROCESSES),
     ),
-    "from": text("The size is that of the scan's spectrum, continued to longer waves.", None, ("scan",)),
-    **{name: of_parameter(parameter) for name, parameter in OF_WAVES.items()},
+    "from": Key.text("The size is that of the scan's spectrum, continued to longer waves.", None, ("scan",)),
+    **{name: Key.of_parameter(parameter) for name, parameter in OF_WAVES.items()},
 }
