@@ -79,19 +79,11 @@ def command(
     model: Path,
     face_a: str,
     face_b: str,
-    unit: str,
-    force_unit: str,
     law: Path,
-    joint: str | None,
-    pressure: str,
-    preload: str | None,
     tolerance: str | None,
-    coupling: Any,
     frequency: str | None,
-    damping: Any,
     solver: str | None,
     out: Path | None,
-    any_size: bool,
     matrices: Path | None,
     mass: Path | None,
     dofs: Path | None,
@@ -99,6 +91,7 @@ def command(
     mass_unit: str | None,
     count: int,
     as_json: bool,
+    **options: Any,
 ) -> None:
     """Apply the contact law of a study to two faces of MODEL and write the joint for another solver.
 
@@ -115,21 +108,7 @@ def command(
     if at is not None and at <= 0:
         raise InputError(f'--frequency "{frequency}" must be above 0')
     reach = None if tolerance is None else units.parse(tolerance, "m", name="--tolerance")
-    made = attach(
-        model,
-        (face_a, face_b),
-        unit=unit,
-        study=Study.read(law),
-        pressure=pressure,
-        joint=joint,
-        preload=preload,
-        tolerance=reach,
-        coupling=coupling,
-        frequency=at,
-        damping=damping,
-        force_unit=force_unit,
-        any_size=any_size,
-    )
+    made = attach(model, (face_a, face_b), study=Study.read(law), tolerance=reach, frequency=at, **options)
     document = made.to_dict()
     files: list[Path] = []
     lines = [*made.deck.facts, f"{len(made.pairs)} pairs of nodes"]

@@ -1,11 +1,10 @@
 """faying bolts STUDY.toml: a sheet for each bolt."""
 
-import json
 from pathlib import Path
 
 import click
 
-from faying.cli.options import PATH
+from faying.cli.options import PATH, show
 from faying.cli.progress import Form, Shown, progress_options
 from faying.files import write_text
 
@@ -26,11 +25,5 @@ def command(study: Path, preload: str | None, page: Path | None, as_json: bool, 
 
     with Shown("bolts", progress) as report:
         found = bolt_sheet(study, preload, report=report)
-    file = None if page is None else write_text(page, shown.html(found))
-    if as_json:
-        files = [] if file is None else [str(file)]
-        click.echo(json.dumps(found.to_dict() | {"files": files}, indent=2, allow_nan=False))
-        return
-    click.echo(shown.terminal(found))
-    if file is not None:
-        click.echo(f"\nwritten: {file}")
+    files = [] if page is None else [write_text(page, shown.html(found))]
+    show(as_json, found.to_dict, lambda: shown.terminal(found), files, heading="written:")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from faying.cli.options import FILE, PATH
+from faying.cli.options import FILE, PATH, show
 from faying.cli.progress import Form, Shown, progress_options
 
 
@@ -32,7 +32,6 @@ def command(
     from faying.output import load_cases as shown
     from faying.result.load_cases_figure import figure
     from faying.style import check_ending, save
-    from faying.text import json_text
 
     if plot is not None:
         check_ending(plot)
@@ -40,9 +39,4 @@ def command(
         found = load_cases(study, preload=preload, modes=not no_modes, intervals=intervals, report=report)
     files = [] if out is None else [found.save(out)]
     files += [] if plot is None else [save(figure(found), plot)]
-    if as_json:
-        click.echo(json_text(found.to_dict() | {"files": [str(file) for file in files]}))
-        return
-    click.echo(shown.terminal(found))
-    if files:
-        click.echo(f"\nwritten: {', '.join(str(file) for file in files)}")
+    show(as_json, found.to_dict, lambda: shown.terminal(found), files, heading="written:")

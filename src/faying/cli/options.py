@@ -20,6 +20,7 @@ def show(
     text: Callable[[], str],
     files: Sequence[Path],
     folder: Path | None = None,
+    heading: str = "written to",
 ) -> None:
     """Print what a command found, as JSON or as text, and the files that it wrote: all of them in `folder`, or each."""
     if as_json:
@@ -29,7 +30,7 @@ def show(
     if files and folder is not None:
         click.echo(f"\nwritten to {folder}: {', '.join(file.name for file in files)}")
     elif files:
-        click.echo(f"\nwritten to {', '.join(map(str, files))}")
+        click.echo(f"\n{heading} {', '.join(map(str, files))}")
 
 
 def quantity(value: Any, unit: str) -> dict[str, Any]:

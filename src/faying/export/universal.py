@@ -10,6 +10,7 @@ from faying.measured.frf import FRF, Dof
 from faying.measured.modes import ModeSet
 from faying.measured.uff_write import write_uff
 from faying.result import Receptance, Result
+from faying.result.response_figure import axis_name
 from faying.study.keys.solution import ResponseChoice
 from faying.typing import Array
 from faying.units import load_text
@@ -21,7 +22,7 @@ TEST_FILES = ("test_modes.uff", "test_frf.uff")
 def check(spec: ResponseChoice | None) -> None:
     """Raise InputError for a response along a direction that no universal file can state."""
     for point, axis in (*spec.inputs, *spec.outputs) if spec else ():
-        if _name(axis) is None:
+        if axis_name(axis) is None:
             raise InputError(
                 f"response: the direction {list(axis)} at {[f'{1e3 * v:g} mm' for v in point]} is along none of x, "
                 f"y, z, the only "
@@ -115,7 +116,7 @@ def _frf(response: Receptance, labels: dict[tuple[float, ...], int]) -> FRF:
     columns: dict[Dof, int] = {}
     for side, known in ((response.outputs, rows), (response.inputs, columns)):
         for k, (point, axis) in enumerate(side):
-            known.setdefault(Dof(labels[tuple(point)], _name(axis) or ""), k)
+            known.setdefault(Dof(labels[tuple(point)], axis_name(axis) or ""), k)
     values = response.values[-1][:, list(rows.values())][:, :, list(columns.values())].transpose(1, 2, 0)
     receptance = FRF(
         frequency=response.frequencies,
@@ -126,15 +127,6 @@ def _frf(response: Receptance, labels: dict[tuple[float, ...], int]) -> FRF:
         positions={k: p for p, k in labels.items()},  # type: ignore[misc]
     )
     return receptance.to("accelerance")
-
-
-def _name(axis: tuple[float, ...]) -> str | None:
-    """x, -x, y ... of a direction along an axis, to a degree; None for others."""
-    unit = np.array(axis) / np.linalg.norm(axis)
-    k = int(np.abs(unit).argmax())
-    if abs(unit[k]) < 0.9998:
-        return None
-    return ("-" if unit[k] < 0 else "") + "xyz"[k]
 
 
 def _spread(points: Array, first: list[int]) -> list[int]:

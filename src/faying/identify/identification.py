@@ -217,6 +217,10 @@ class Identification(Recorded):
 
     def to_dict(self) -> dict[str, Any]:
         """The numbers a reader wants, ready for JSON, in SI; samples are left out."""
+
+        def by_level(values: Array) -> dict[str, Any]:
+            return {str(level): listed(row) for level, row in zip(LEVELS, values, strict=True)}
+
         parameters = {
             name: {
                 "unit": unit or "1",
@@ -224,16 +228,13 @@ class Identification(Recorded):
                 "mean": float(self.mean[k]),
                 "sd": float(self.sd[k]),
                 "posterior_contraction": float(self.posterior_contraction[k]),
-                "quantiles": dict(zip(map(str, LEVELS), self.quantiles()[:, k].tolist(), strict=True)),
+                "quantiles": by_level(self.quantiles()[:, k]),
             }
             for k, (name, unit, prior) in enumerate(zip(self.names, self.units, self.priors, strict=True))
         }
-        quantiles = zip(map(str, LEVELS), self.predicted, strict=True)
-        lost = self.predicted_losses
         losses = None
-        if self.losses is not None and lost is not None:
-            named = zip(map(str, LEVELS), lost, strict=True)
-            losses = {"test": listed(self.losses), "quantiles": {level: listed(values) for level, values in named}}
+        if self.losses is not None and self.predicted_losses is not None:
+            losses = {"test": listed(self.losses), "quantiles": by_level(self.predicted_losses)}
         return {
             "parameters": parameters,
             "correlation": listed(self.correlation),
@@ -244,7 +245,7 @@ class Identification(Recorded):
             "left_out": listed(self.left_out),
             "test": {"unit": "Hz", "values": listed(self.test)},
             "used": listed(self.used),
-            "predicted": {"unit": "Hz", "quantiles": {level: listed(values) for level, values in quantiles}},
+            "predicted": {"unit": "Hz", "quantiles": by_level(self.predicted)},
             "loss_factors": losses,
             "offsets": {"mean": listed(self.offset_mean), "sd": listed(self.offset_sd)},
             "surrogate_error": listed(self.surrogate_error),

@@ -6,7 +6,7 @@ import numpy as np
 
 from faying.result.result import Result
 from faying.style import COLUMN, SMALL, TALLEST, WIDE, drawing, legend_above, load_colours, new_figure
-from faying.units import load_text
+from faying.units import in_mm, load_text
 
 WRITTEN = 6  # modes at most for which the values of MAC stand in the map
 
@@ -50,12 +50,17 @@ def phase(ax: Any, result: Result, output: int = 0, input: int = 0) -> Any:
 
 def words(point: Any, axis: Any) -> str:
     """A degree of freedom in words: (40, 0, 15) mm along z."""
-    unit = np.array(axis) / np.linalg.norm(axis)
+    parts = ", ".join(f"{x:.2f}" for x in np.array(axis) / np.linalg.norm(axis))
+    return f"{in_mm(point)} along {axis_name(axis) or f'({parts})'}"
+
+
+def axis_name(direction: Any) -> str | None:
+    """x, -x, y ... of a direction along an axis, to a degree; None for others."""
+    unit = np.array(direction) / np.linalg.norm(direction)
     k = int(np.abs(unit).argmax())
-    name = (
-        ("-" if unit[k] < 0 else "") + "xyz"[k] if abs(unit[k]) > 0.9998 else f"({', '.join(f'{v:.2f}' for v in unit)})"
-    )
-    return f"({', '.join(f'{1e3 * v:.4g}' for v in point)}) mm along {name}"
+    if abs(unit[k]) < 0.9998:
+        return None
+    return ("-" if unit[k] < 0 else "") + "xyz"[k]
 
 
 @drawing

@@ -1,6 +1,7 @@
 """`faying compare RESULT.nc OTHER`: the result of a study next to a hammer test, or to another result."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -55,16 +56,13 @@ def command(
     result: Path,
     other: Path,
     load: str | None,
-    points: Path | None,
     frame: Path | None,
-    length_unit: str | None,
     tolerance: str | None,
-    direction: str | None,
-    quantity: str | None,
     least_mac: float,
     greatest_shift: float,
     out: Path | None,
     as_json: bool,
+    **options: Any,
 ) -> None:
     """Compare RESULT (result.nc of `faying run`) with the hammer test in OTHER, or with another result.
 
@@ -83,7 +81,7 @@ def command(
     wanted = units.parse(load, "N", name="--load") if load else None
     model = Result.load(result).modes_at(wanted, source=str(result))
     distance = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
-    tested = read_test(other, points=points, length_unit=length_unit, direction=direction, quantity=quantity)
+    tested = read_test(other, **options)
     if tested.identified:
         click.echo(f"{other}: no mode shapes; modes are identified from its FRFs", err=True)
     comparison = compare_modes(

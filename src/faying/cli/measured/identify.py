@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -31,16 +32,13 @@ from faying.output.terminal import folded
 @progress_options
 def command(
     study: Path,
-    leave_out: tuple[str, ...],
-    seed: int,
-    count: int,
     jobs: int | None,
-    dask: str | None,
     out: Path | None,
     plot: Path | None,
     html: Path | None,
     as_json: bool,
     progress: Form | None,
+    **options: Any,
 ) -> None:
     """Update the uncertain numbers of STUDY from its test, and list those that the test cannot identify.
 
@@ -57,16 +55,7 @@ def command(
     plan = Study.read(study)
     out = out or plan.results / "identification.nc"
     with new_folder(out.parent, "give another file with --out"), Shown("identify", progress) as report:
-        found = identify(
-            plan,
-            leave_out or None,
-            seed=seed,
-            count=count,
-            jobs=jobs or os.cpu_count() or 1,
-            dask=dask,
-            out=out,
-            report=report,
-        )
+        found = identify(plan, jobs=jobs or os.cpu_count() or 1, out=out, report=report, **options)
     files = [out] + ([save(drawing.figure(found), plot)] if plot else [])
     source = plan.test.source if plan.test else ""
     if html:

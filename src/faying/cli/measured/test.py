@@ -47,17 +47,13 @@ TEXT = (".txt", ".csv", ".dat", ".asc")
 @click.option("--out", type=FILE, help="Write modes and FRFs as a universal file.")
 def command(
     files: tuple[Path, ...],
-    quantity: str | None,
-    frequency_step: str | None,
-    direction: str | None,
-    length_unit: str | None,
-    points: Path | None,
     band: str | None,
     order: int | None,
     stays: int | None,
     as_json: bool,
     plot: str | None,
     out: Path | None,
+    **options: Any,
 ) -> None:
     """Identify the modes of a hammer test from the FRFs in FILES: one universal file, or text files of one FRF each."""
     from faying.measured.identify import identify_modes
@@ -65,7 +61,7 @@ def command(
     from faying.measured.uff_write import write_uff
 
     limits = frequency_band(band) if band else None
-    frf = read_frf(files, quantity, frequency_step, direction, length_unit, points)
+    frf = read_frf(files, **options)
     low, high = limits or (0.0, float("inf"))
     lines = int(((frf.frequency > 0) & (frf.frequency >= low) & (frf.frequency <= high)).sum())
     rule = Rule.fitting(lines, highest_order=order, orders=stays)
