@@ -1,6 +1,6 @@
 """What a user should know of a result: frequencies that fall, laws far from the exact contact, unstable windows."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -18,9 +18,8 @@ FALL = 1e-6  # relative: a smaller fall is none
 FAR = 2.0  # factor between a law and the exact contact that is noted
 
 
-def falling(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
+def falling(case: Case, states: Sequence[LoadedCase]) -> Iterator[Note]:
     """Say which modes fall as the preload grows, and why."""
-    out = []
     for before, after in pairwise(states):
         change = after.damped.frequencies / before.damped.frequencies - 1
         down = np.flatnonzero(change < -FALL)
@@ -38,16 +37,14 @@ def falling(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
             f"{load_text(after.load)}, by up to {-100 * change.min():.2g} %: as the parts bend under the "
             f"bolts, pressure falls on {percent(less)} of the joint{opened}, while it grows elsewhere"
         )
-        out.append(Note(code="falls", load=after.load, text=text))
-    return out
+        yield Note(code="falls", load=after.load, text=text)
 
 
-def against_exact_contact(case: Case, state: LoadedCase) -> list[Note]:
+def against_exact_contact(case: Case, state: LoadedCase) -> Iterator[Note]:
     """Say where a law lies far from the half-space contact of its own scan, and where the window decides its k_n.
 
     Both at the mean pressure of the joint where it touches. Joints that share surface and law have one note.
     """
-    out: list[Note] = []
     seen: set[object] = set()
     for choice, joint, surface, pressure in zip(
         case.study.joints, case.structure.joints, case.surfaces, state.preload.pressures, strict=True
@@ -72,7 +69,7 @@ def against_exact_contact(case: Case, state: LoadedCase) -> list[Note]:
                 ratio = stiffness_at(law, mean) / stiffness_at(exact, mean)
                 if not 1 / FAR <= ratio <= FAR:
                     text = f"{at}: k_n of {law.name} is {ratio:.2g} times that of the half-space contact of its scan"
-                    out.append(Note(code="far-from-exact", joint=joint.name, text=text))
+                    yield Note(code="far-from-exact", joint=joint.name, text=text)
             given = chosen.given if chosen.kind.label == law.name else {}
             found = stability(mates, model=law.name, given=given, pressure=mean)
         except FayingError:
@@ -84,5 +81,4 @@ def against_exact_contact(case: Case, state: LoadedCase) -> list[Note]:
                 f"{at}: {law.name} has {factor:.2g} times the k_n on the {name} of the scan, compared with all of it; "
                 f"{remedy} shows which one is right"
             )
-            out.append(Note(code="window", joint=joint.name, text=text))
-    return out
+            yield Note(code="window", joint=joint.name, text=text)

@@ -1,6 +1,6 @@
 """From what is not known of a case to the interval of each frequency, one thing at a time."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -71,7 +71,7 @@ def law_factors(case: Case) -> list[tuple[float, float, float]]:
     ]
 
 
-def law_notes(case: Case) -> list[Note]:
+def law_notes(case: Case) -> Iterator[Note]:
     """Say where measured joints have less than half or more than twice the stiffness of the law in the median."""
     found: dict[tuple[str, tuple[float, float, float]], list[str]] = {}
     known = stated(case.study.uncertain)
@@ -80,15 +80,13 @@ def law_notes(case: Case) -> list[Note]:
         given = f"joint.{joint.name}.stiffness" in known or "joint.stiffness" in known
         if not (given or 1 / FAR <= factors[1] <= FAR):
             found.setdefault((law.model.name, factors), []).append(joint.name)
-    out = []
     for (name, (low, middle, high)), names in found.items():
         text = (
             f"{', '.join(names)}: measured joints of such metals have {middle:.2g} times the stiffness of {name} in "
             f"the median, {low:.2g} to {high:.2g} times from 5 to 95 %; the intervals contain this, the frequencies do "
             "not"
         )
-        out.append(Note(code="law-off", joint=names[0] if len(names) == 1 else "", text=text))
-    return out
+        yield Note(code="law-off", joint=names[0] if len(names) == 1 else "", text=text)
 
 
 def _combined(

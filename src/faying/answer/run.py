@@ -1,6 +1,6 @@
 """From a study to its result."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -353,8 +353,7 @@ def _response(study: Study, states: Sequence[LoadedCase]) -> Receptance | None:
     )
 
 
-def _closing_notes(study: Study, rigid: Array, first: float) -> list[Note]:
-    out = []
+def _closing_notes(study: Study, rigid: Array, first: float) -> Iterator[Note]:
     if study.uncertain is not None:
         within = [column.key for column in study.uncertain.inputs if column.within]
         taken = f"; of {', '.join(within)} the median is taken" if within else ""
@@ -362,24 +361,23 @@ def _closing_notes(study: Study, rigid: Array, first: float) -> list[Note]:
             f"the numbers under [uncertain] do not scatter here: this is the answer at those that the study "
             f"gives{taken}; faying predict gives intervals"
         )
-        out.append(Note(code="uncertain", text=text))
+        yield Note(code="uncertain", text=text)
     if study.load_cases:
         names = ", ".join(repr(load.name) for load in study.load_cases)
         text = f"load cases are left out of a run ({names}); faying loads finds forces, opening and slip under them"
-        out.append(Note(code="load-cases", text=text))
+        yield Note(code="load-cases", text=text)
     if len(rigid) and rigid.max() > NOT_ZERO * first:
         text = (
             f"a rigid-body motion is at {rigid.max():.2g} Hz instead of 0: rounding has cost the frequencies "
             "digits, most those near it; look for parts or springs far stiffer than the rest"
         )
-        out.append(Note(code="rigid", text=text))
+        yield Note(code="rigid", text=text)
     if study.modes.damping == "viscous":
         text = (
             "the dampers are those of the JK paper, c = eta sqrt(M k) point by point: their sum grows with the square "
             "root of the number of points, so loss factors depend on the mesh"
         )
-        out.append(Note(code="viscous", text=text))
-    return out
+        yield Note(code="viscous", text=text)
 
 
 def _sources(case: Case) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """The modes of a case over its loads: their shapes, how alike they are, where they cross, which are those of a test."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -36,16 +36,14 @@ def macs(case: Case, states: Sequence[LoadedCase]) -> tuple[list[Array], Array]:
     return steps, np.stack(with_first)
 
 
-def encounters(states: Sequence[LoadedCase], steps: Sequence[Array]) -> list[Note]:
+def encounters(states: Sequence[LoadedCase], steps: Sequence[Array]) -> Iterator[Note]:
     """Say which modes cross and which couple from one load to the next; steps: MAC from load to load."""
-    out = []
     for code, word, found in zip(("modes-cross", "modes-couple"), ("cross", "couple"), changes(steps), strict=True):
         for step in sorted({k for k, _, _ in found}):
             pairs = ", ".join(f"{i + 1} and {j + 1}" for k, i, j in found if k == step)
             before, after = (load_text(states[step + k].load) for k in (0, 1))
             text = f"modes {pairs} {word} between {before} and {after} (MAC weighted by mass)"
-            out.append(Note(code=code, load=states[step + 1].load, text=text))
-    return out
+            yield Note(code=code, load=states[step + 1].load, text=text)
 
 
 def compared(
@@ -71,13 +69,12 @@ def compared(
         published_name=test.published_name,
         kind=test.kind,
     )
-    return comparison, _unmatched(pairs, measured, test.threshold)
+    return comparison, list(_unmatched(pairs, measured, test.threshold))
 
 
-def _unmatched(pairs: Paired, measured: Array, threshold: float) -> list[Note]:
+def _unmatched(pairs: Paired, measured: Array, threshold: float) -> Iterator[Note]:
     """Say which modes of the test, and which visible ones of the model among them, have no partner."""
     found, frequencies, visibility = pairs.modes, pairs.frequencies, pairs.visibility
-    out = []
     lost = np.flatnonzero(found < 0)
     if len(lost):
         which = ", ".join(f"{k + 1} ({measured[0, k]:.1f} Hz)" for k in lost)
@@ -85,11 +82,10 @@ def _unmatched(pairs: Paired, measured: Array, threshold: float) -> list[Note]:
             f"test mode {which}: no computed mode that moves at the points of the test is within 30 % of it; it is "
             "left out. Raise modes.count, or look whether the test has a mode of something else"
         )
-        out.append(Note(code="test-modes", text=text))
+        yield Note(code="test-modes", text=text)
     inside = (frequencies[0] > 0.97 * measured.min()) & (frequencies[0] < 1.03 * measured.max())
     rest = [k for k in np.flatnonzero(inside & (visibility.max(axis=0) >= threshold)) if k not in found]
     if rest:
         which = ", ".join(f"{k + 1} ({frequencies[0, k]:.1f} Hz)" for k in rest)
         text = f"computed mode {which} moves at the points of the test, which lists none for it"
-        out.append(Note(code="model-modes", text=text))
-    return out
+        yield Note(code="model-modes", text=text)

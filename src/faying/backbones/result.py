@@ -1,6 +1,6 @@
 """The result of a curve: its points as arrays, its error bounds, its witness, and what is to be said of it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -231,9 +231,8 @@ def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: QuasiStaticCheck 
     return list(dict.fromkeys(out))
 
 
-def _differences(curve: BackboneCurve, witness: QuasiStaticCheck) -> list[Note]:
+def _differences(curve: BackboneCurve, witness: QuasiStaticCheck) -> Iterator[Note]:
     """Say where the static cycle gives another damping, and what they do not share."""
-    out = []
     for level, change in zip(witness.acceleration, witness.damping_change, strict=True):
         if not abs(change) > DIFFERS:
             continue
@@ -243,5 +242,4 @@ def _differences(curve: BackboneCurve, witness: QuasiStaticCheck) -> list[Note]:
             f"structure as the mode at rest moves, while other modes and harmonics make {point.other_modes:.1%} of the "
             f"motion and {point.slipping:.0%} of the joints' friction slides"
         )
-        out.append(Note(code="backbone-witness", load=curve.load, text=why))
-    return out
+        yield Note(code="backbone-witness", load=curve.load, text=why)

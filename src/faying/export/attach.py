@@ -1,6 +1,6 @@
 """A law laid on two faces of a user's own model: from mesh, study and pressure to the springs of the joint."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -204,9 +204,8 @@ def _vector(v: Array) -> str:
     return "(" + ", ".join(f"{x:.3g}" for x in np.round(v, 3) + 0.0) + ")"
 
 
-def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str]:
+def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> Iterator[str]:
     """What finds no partner, and how far the faces are apart."""
-    notes = []
     for name, nodes, values in (
         (faces[0], interface.first_nodes, interface.first_values),
         (faces[1], interface.second_nodes, interface.second_values),
@@ -215,14 +214,13 @@ def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> list[str
         lost = mesh.numbers[np.setdiff1d(every, nodes[values != 0])]
         if len(lost):
             some = few(lost)
-            notes.append(f"{len(lost)} of {len(every)} nodes of {name!r} have no partner within the tolerance: {some}")
+            yield f"{len(lost)} of {len(every)} nodes of {name!r} have no partner within the tolerance: {some}"
     gap = float(np.abs(interface.gap).max())
     if gap > TOUCHING * mesh.size:
-        notes.append(
+        yield (
             f"the faces are up to {gap * 1e3:.3g} mm apart: springs between nodes that do not coincide resist a "
             "rotation of the model"
         )
-    return notes
 
 
 def _materials(study: Study, mesh: Mesh, faces: tuple[str, str]) -> dict[str, Material]:

@@ -1,7 +1,7 @@
 """What a reader of an identification should know."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -17,29 +17,25 @@ MIXED = 0.3  # correlation with the start of a stage above which the samples hav
 SHOWN = 3  # reasons that are listed
 
 
-def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array, modes: int) -> list[Note]:
+def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array, modes: int) -> Iterator[Note]:
     """What of the test the model has no partner for; more parameters than measured numbers.
 
     wanted, used: (load, column), frequencies of the `modes` and then loss factors.
     """
-    out = []
     lost = [
         f"{'loss factor of ' if j >= modes else ''}mode {j % modes + 1} at {show(loads[i], 'N')}"
         for i, j in zip(*np.nonzero(wanted & ~used), strict=True)
     ]
     if lost:
         text = f"Not used, since the model has no partner for them over most of the priors: {', '.join(lost)}."
-        out.append(Note(code="test-modes", text=text))
+        yield Note(code="test-modes", text=text)
     count, measured = int(used.sum()), "frequencies" if used.shape[1] == modes else "frequencies and loss factors"
     if parameters > count:
-        out.append(
-            Note(
-                code="more-parameters-than-data",
-                text=f"{parameters} parameters and {count} {measured}: some combinations of the parameters stay as "
-                "uncertain as their priors make them. More preloads or modes, or fewer parameters, reduce that.",
-            )
+        yield Note(
+            code="more-parameters-than-data",
+            text=f"{parameters} parameters and {count} {measured}: some combinations of the parameters stay as "
+            "uncertain as their priors make them. More preloads or modes, or fewer parameters, reduce that.",
         )
-    return out
 
 
 def of_answers(reasons: Sequence[str], where: str, code: str) -> list[Note]:
@@ -54,16 +50,15 @@ def of_answers(reasons: Sequence[str], where: str, code: str) -> list[Note]:
     return [Note(code=code, text=text)]
 
 
-def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: Array) -> list[Note]:
+def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: Array) -> Iterator[Note]:
     """Parameters that the test does not tell, and those that press against an end of their prior."""
-    out = []
     for name, prior, values in zip(names, priors, samples.T, strict=True):
         of_noise = name in (SCATTER, DISCREPANCY, LOSS_SCATTER, LOSS_DISCREPANCY)
         # of ln x for a lognormal: pressed against its upper end, x itself scatters by more than before
         left = float(prior.standardised(values).std(ddof=1) / prior.sd_standardised)
         if left > UNSEEN and not of_noise:
             text = f"The test carries no information about {name}: its posterior sd is {left:.0%} of its prior's."
-            out.append(Note(code="not-told", text=text))
+            yield Note(code="not-told", text=text)
         ends = prior.quantile(np.array([END, 1 - END]))
         for share, side in ((np.mean(values < ends[0]), "lower"), (np.mean(values > ends[1]), "upper")):
             if share > PRESSED and not (of_noise and side == "lower"):  # little noise is not a fault
@@ -71,8 +66,7 @@ def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: 
                     f"{name} presses against the {side} end of its prior: {share:.0%} of the posterior is in the "
                     f"outer {END:.0%} of it. The prior is too narrow, or the model lacks something."
                 )
-                out.append(Note(code="end-of-prior", text=text))
-    return out
+                yield Note(code="end-of-prior", text=text)
 
 
 def of_sampling(correlation: float) -> list[Note]:
@@ -86,19 +80,17 @@ def of_sampling(correlation: float) -> list[Note]:
     return [Note(code="not-mixed", text=text)]
 
 
-def of_surrogate(missed: float, claimed: float, scatter: float, *, rough: bool) -> list[Note]:
+def of_surrogate(missed: float, claimed: float, scatter: float, *, rough: bool) -> Iterator[Note]:
     """A surrogate that is worse than it says, or worse than the test."""
-    out = []
     if rough:
         text = (
             f"About the posterior the surrogate misses the model by {missed:.2%} rms, where its own error says "
             f"{claimed:.2%}: the intervals may be too narrow or in the wrong place. Narrower priors help."
         )
-        out.append(Note(code="surrogate-rough", text=text))
+        yield Note(code="surrogate-rough", text=text)
     if claimed > scatter:
         text = (
             f"The surrogate's error, {claimed:.2%}, is greater than the scatter of the test, {scatter:.2%}: the "
             "intervals are wider than the test would allow. More evaluations or narrower priors help."
         )
-        out.append(Note(code="surrogate-wide", text=text))
-    return out
+        yield Note(code="surrogate-wide", text=text)

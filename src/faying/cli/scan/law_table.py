@@ -185,15 +185,13 @@ def table(inputs: Any, comparison: Any, heat: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def reasons(response: Any) -> list[str]:
+def reasons(response: Any) -> Iterator[str]:
     """Return why a response leaves its validity range, with the pressures from and to; coverage shows as -."""
 
-    lines = []
     for reason, mask in response.reasons.items():
         if mask.any() and not reason.startswith("pressure "):
             p = response.pressure[mask]
-            lines.append(f"{reason}, at {unit(float(p.min()), 'Pa')} to {unit(float(p.max()), 'Pa')}")
-    return lines
+            yield f"{reason}, at {unit(float(p.min()), 'Pa')} to {unit(float(p.max()), 'Pa')}"
 
 
 def csv(comparison: Any, heat: dict[str, Any]) -> str:
