@@ -1,6 +1,7 @@
 """Read what Faying has saved, whatever it is."""
 
 from pathlib import Path
+from typing import Any, get_args
 
 from faying.errors import ReadError
 from faying.identify.identification import OWN, Identification
@@ -13,13 +14,7 @@ from faying.result.load_cases import LoadCases
 from faying.result.result import Result
 
 Saved = Result | Backbone | Prediction | Identification | LoadCases
-KINDS: tuple[type[Result] | type[Backbone] | type[Prediction] | type[Identification] | type[LoadCases], ...] = (
-    Result,
-    Backbone,
-    Prediction,
-    Identification,
-    LoadCases,
-)
+KINDS: tuple[Any, ...] = get_args(Saved)
 
 
 @checked_call
@@ -39,7 +34,8 @@ def load(path: str | Path) -> Saved:
     name = tree.attributes.get(RECORD) or _earlier(tree)
     for kind in KINDS:
         if name == kind.KIND:
-            return kind.of_file(path, tree)
+            found: Saved = kind.of_file(path, tree)
+            return found
     known = ", ".join(kind.KIND for kind in KINDS)
     raise ReadError(f"{path} has nothing that faying.load reads, which is {known}; a sweep is read by xarray")
 

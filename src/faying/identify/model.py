@@ -17,17 +17,14 @@ class Model(Protocol):
     @property
     def names(self) -> tuple[str, ...]:
         """Of the parameters."""
-        ...
 
     @property
     def units(self) -> tuple[str, ...]:
         """SI units of the parameters."""
-        ...
 
     @property
     def priors(self) -> tuple[Distribution, ...]:
         """Distributions of the parameters."""
-        ...
 
     def frequencies(self, values: Array, report: Report | None = None, allowed: float = inf) -> tuple[Array, list[str]]:
         """The frequencies of the test's modes, and after them their loss factors where the test has these.
@@ -42,4 +39,3 @@ class Model(Protocol):
             no answer or a mode of the test no partner; and for each sample the reason why it has no answer, "" where it
             has one.
         """
-        ...

@@ -7,6 +7,7 @@ from faying.bolt.sheet import Quantity, Row
 from faying.output import page
 from faying.output.table import Rows, text
 from faying.output.terminal import folded
+from faying.text import in_columns
 from faying.units import show
 
 # units of the rows, with the factor from SI
@@ -78,24 +79,19 @@ def html(found: BoltSheets) -> str:
     """Return all sheets as one page, each bolt on its own sheet when printed."""
     body = [STYLE, f"<h1>{escape(found.title)}: bolt sheets at {escape(show(found.load, 'N'))}</h1>"]
     for sheet in found.sheets:
-        detail: Rows = [["step", "quantity", "formula", "from", "value", "limit", "used", "verdict", "source"]]
-        for row in sheet.rows:
-            inputs = ", ".join(f"{one.symbol} = {value_of(one)}" for one in row.inputs)
-            limit = "-" if row.limit is None else f"{row.limit.symbol} = {value_of(row.limit)}"
-            name = f"{row.result.symbol}: {row.result.name}"
-            detail.append(
-                [
-                    row.step,
-                    name,
-                    row.formula,
-                    inputs,
-                    value_of(row.result),
-                    limit,
-                    _used(row),
-                    _verdict(row),
-                    row.source,
-                ]
-            )
+        rows = sheet.rows
+        limits = ["-" if row.limit is None else f"{row.limit.symbol} = {value_of(row.limit)}" for row in rows]
+        detail = in_columns(
+            ("step", [row.step for row in rows], ""),
+            ("quantity", [f"{row.result.symbol}: {row.result.name}" for row in rows], ""),
+            ("formula", [row.formula for row in rows], ""),
+            ("from", [", ".join(f"{one.symbol} = {value_of(one)}" for one in row.inputs) for row in rows], ""),
+            ("value", [value_of(row.result) for row in rows], ""),
+            ("limit", limits, ""),
+            ("used", map(_used, rows), ""),
+            ("verdict", map(_verdict, rows), ""),
+            ("source", [row.source for row in rows], ""),
+        )
         body += [
             f'<section class="bolt"><h2>Bolt "{escape(sheet.bolt)}", {escape(sheet.size)}</h2>',
             f"<p>{escape(sheet.verdict)}. {escape(SCOPE)}</p>",

@@ -1,5 +1,6 @@
 """Load cases as text of a terminal, 80 columns wide, and as rows."""
 
+from functools import partial
 from textwrap import wrap
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from faying.output.table import Rows, text
 from faying.output.terminal import wrapped
 from faying.result.load_cases import ENOUGH, LoadCases
+from faying.text import in_columns
 from faying.typing import Array
 from faying.units import show
 
@@ -50,47 +52,36 @@ def heading(found: LoadCases, k: int) -> str:
 
 def bolt_rows(found: LoadCases, k: int) -> Rows:
     """Return one row for each bolt under a case."""
-    rows: Rows = [["bolt", "F [kN]", "change", "linear", "F_A", "Phi", "M", "V", "seat", "margin"]]
-    for b, name in enumerate(found.bolts):
-        force, linear = found.bolt_force[k, b], found.bolt_force_linear[k, b]
-        rest = found.bolt_preload[b]
-        rows.append(
-            [
-                _cut(name, 8),
-                f"{force / 1e3:.4g}",
-                _short(force - rest, sign="+"),
-                _short(linear - rest, sign="+"),
-                _short(found.working_load[k, b], sign="+"),
-                _number(found.load_factor[k, b], ".3f"),
-                _short(found.bolt_moment[k, b]),
-                _short(found.bolt_shear[k, b]),
-                _short(found.seat_pressure[k, b] / 1e6),
-                margin(found.head_margin[k, b]),
-            ]
-        )
-    return rows
+    force, rest, signed = found.bolt_force[k], found.bolt_preload, partial(_short, sign="+")
+    return in_columns(
+        ("bolt", [_cut(name, 8) for name in found.bolts], ""),
+        ("F [kN]", force / 1e3, ".4g"),
+        ("change", map(signed, force - rest), ""),
+        ("linear", map(signed, found.bolt_force_linear[k] - rest), ""),
+        ("F_A", map(signed, found.working_load[k]), ""),
+        ("Phi", [_number(factor, ".3f") for factor in found.load_factor[k]], ""),
+        ("M", map(_short, found.bolt_moment[k]), ""),
+        ("V", map(_short, found.bolt_shear[k]), ""),
+        ("seat", map(_short, found.seat_pressure[k] / 1e6), ""),
+        ("margin", map(margin, found.head_margin[k]), ""),
+    )
 
 
 def joint_rows(found: LoadCases, k: int) -> Rows:
     """Return one row for each joint under a case."""
-    rows: Rows = [["joint", "N [kN]", "Q", "T", "mean", "peak", "opens", "slides", "mu >", "margin", "worst"]]
-    for j, name in enumerate(found.joints):
-        rows.append(
-            [
-                _cut(name, 8),
-                f"{found.normal_force[k, j] / 1e3:.4g}",
-                _short(found.shear_force[k, j]),
-                _short(found.torque[k, j]),
-                _short(found.mean_pressure[k, j] / 1e6),
-                _short(found.greatest_pressure[k, j] / 1e6),
-                f"{found.opened[k, j]:.1%}",
-                "-" if np.isnan(found.friction[j]) else f"{found.sliding[k, j]:.1%}",
-                _short(found.friction_needed_worst[k, j]),
-                margin(found.slip_margin[k, j]),
-                margin(found.slip_margin_worst[k, j]),
-            ]
-        )
-    return rows
+    return in_columns(
+        ("joint", [_cut(name, 8) for name in found.joints], ""),
+        ("N [kN]", found.normal_force[k] / 1e3, ".4g"),
+        ("Q", map(_short, found.shear_force[k]), ""),
+        ("T", map(_short, found.torque[k]), ""),
+        ("mean", map(_short, found.mean_pressure[k] / 1e6), ""),
+        ("peak", map(_short, found.greatest_pressure[k] / 1e6), ""),
+        ("opens", found.opened[k], ".1%"),
+        ("slides", np.where(np.isnan(found.friction), np.nan, found.sliding[k]), ".1%"),
+        ("mu >", map(_short, found.friction_needed_worst[k]), ""),
+        ("margin", map(margin, found.slip_margin[k]), ""),
+        ("worst", map(margin, found.slip_margin_worst[k]), ""),
+    )
 
 
 def dowel_rows(found: LoadCases, k: int) -> Rows:

@@ -3,7 +3,7 @@
 import json
 import types
 from collections.abc import Collection, Mapping
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
@@ -124,9 +124,7 @@ class Recorded(Summary):
         group = to_group(self)
         coordinates = {name: _coordinate(name, item) for name, item in self.labels().items()}
         attributes = {"Conventions": "CF-1.11", RECORD: self.KIND, **group.attributes}
-        return with_preload(
-            Group(variables={**coordinates, **group.variables}, attributes=attributes, groups=group.groups)
-        )
+        return with_preload(replace(group, variables={**coordinates, **group.variables}, attributes=attributes))
 
     @classmethod
     def of_tree(cls, tree: Group) -> Self:
@@ -284,7 +282,7 @@ def to_group(value: Any) -> Group:
     root = variables.pop("")
     for name, inside in variables.items():
         inner = groups.get(name, Group())
-        groups[name] = Group(variables={**inside, **inner.variables}, attributes=inner.attributes, groups=inner.groups)
+        groups[name] = replace(inner, variables={**inside, **inner.variables})
     return Group(variables=root, attributes=attributes, groups=groups)
 
 
@@ -300,16 +298,11 @@ def with_preload(tree: Group) -> Group:
         return tree
 
     def lend(group: Group) -> Group:
-        has = any("load" in one.dims for one in group.variables.values())
-        variables, attributes = dict(group.variables), dict(group.attributes)
-        if has:
-            variables.setdefault(PRELOAD, preload)
-            attributes["coordinates"] = PRELOAD
-        return Group(
-            variables=variables,
-            attributes=attributes,
-            groups={name: lend(inner) for name, inner in group.groups.items()},
-        )
+        groups = {name: lend(inner) for name, inner in group.groups.items()}
+        if not any("load" in one.dims for one in group.variables.values()):
+            return replace(group, groups=groups)
+        variables = {**group.variables, PRELOAD: group.variables.get(PRELOAD, preload)}
+        return Group(variables=variables, attributes={**group.attributes, "coordinates": PRELOAD}, groups=groups)
 
     return lend(tree)
 

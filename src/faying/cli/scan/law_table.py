@@ -1,8 +1,9 @@
 """`faying law --models`: several laws of one scan in one table and on one plot, with the factor between them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -154,27 +155,18 @@ def table(inputs: Any, comparison: Any, heat: dict[str, Any]) -> str:
     ]
     for what, title, scale in (("area", "real area / nominal area", 1.0), ("k_n", "k_n [MPa/um]", 1e-12)):
         laws = {n: r for n, r in comparison.responses.items() if what in r.quantities()}
-        lines += ["", title, f"  {'p [MPa]':<12}" + "".join(f"{comparison.pressure[i] * 1e-6:>11.4g}" for i in shown)]
+        lines += ["", title, _row("p [MPa]", comparison.pressure[shown] * 1e-6)]
         for name, response in laws.items():
-            cells = []
-            for i in shown:
-                value = response.quantities()[what][i] * scale
-                text = "-" if np.isnan(value) else f"{value:.4g}"
-                cells.append(f"{text + ('' if response.valid[i] else '*'):>11}")
-            lines.append(f"  {name:<12}" + "".join(cells))
+            marks = ["" if valid else "*" for valid in response.valid[shown]]
+            lines.append(_row(name, response.quantities()[what][shown] * scale, marks=marks))
         ratios = comparison.ratios(what)
         if ratios:
+            unknown = np.full(comparison.pressure.shape, np.nan)
             lines.append("  times that of the half-space")
-            for name in laws:
-                ratio = ratios.get(name, np.full(comparison.pressure.shape, np.nan))
-                cells = [f"{'-' if np.isnan(ratio[i]) else f'{ratio[i]:.3g}':>11}" for i in shown]
-                lines.append(f"  {name:<12}" + "".join(cells))
-        spread = comparison.spread(what)
-        lines.append(f"  {'max / min':<12}" + "".join(f"{spread[i]:>11.4g}" for i in shown))
+            lines += [_row(name, ratios.get(name, unknown)[shown], ".3g") for name in laws]
+        lines.append(f"  {'max / min':<12}" + "".join(f"{value:>11.4g}" for value in comparison.spread(what)[shown]))
     if heat:
-        lines += ["", "h [W/(m2 K)], clean metal in vacuum"]
-        for name, h in heat.items():
-            lines.append(f"  {name:<12}" + "".join(f"{'-' if np.isnan(h[i]) else f'{h[i]:.4g}':>11}" for i in shown))
+        lines += ["", "h [W/(m2 K)], clean metal in vacuum", *(_row(name, h[shown]) for name, h in heat.items())]
     lines += ["", "* outside the validity range of the model (`faying models`); - outside what it covers"]
     for name, response in comparison.responses.items():
         lines += [f"  {name}: {reason}" for reason in reasons(response)]
@@ -183,6 +175,12 @@ def table(inputs: Any, comparison: Any, heat: dict[str, Any]) -> str:
         lines.append(f"without a stiffness of their own: {', '.join(without)}")
     lines += [f"left out: {name}: {why}" for name, why in comparison.left_out.items()]
     return "\n".join(lines)
+
+
+def _row(name: str, values: Any, form: str = ".4g", marks: Sequence[str] = ()) -> str:
+    """A name with numbers, each with its mark; a dash where there is none."""
+    cells = ["-" if value != value else format(value, form) for value in values]
+    return f"  {name:<12}" + "".join(f"{cell + mark:>11}" for cell, mark in zip_longest(cells, marks, fillvalue=""))
 
 
 def reasons(response: Any) -> Iterator[str]:
