@@ -128,14 +128,8 @@ def command(
     if models or all_models:
         if not on_scan or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
-        output = law_table.Output(
-            as_json=as_json,
-            csv_file=csv_file,
-            plot=plot,
-            contact_map=contact_map,
-            conductance=options["conductance"],
-        )
-        law_table.show(mates, several, pressures, output)
+        files = {"csv_file": csv_file, "plot": plot, "contact_map": contact_map}
+        law_table.show(mates, several, pressures, **files, as_json=as_json, conductance=options["conductance"])
         return
     if contact_map:
         raise InputError("--contact-map needs --scan, and halfspace among --models")

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -21,36 +20,35 @@ from faying.units import show as unit
 SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Output:
-    """What to print, write and draw: JSON in place of tables, files, the conductance of heat."""
-
-    as_json: bool = False
-    csv_file: str | None = None
-    plot: str | None = None
-    contact_map: str | None = None
-    conductance: bool = False
-
-
-def show(mates: Any, names: list[str] | None, pressures: Any, output: Output) -> None:
+def show(
+    mates: Any,
+    names: list[str] | None,
+    pressures: Any,
+    *,
+    as_json: bool,
+    conductance: bool,
+    csv_file: str | None,
+    plot: str | None,
+    contact_map: str | None,
+) -> None:
     """Compare the laws and print, write and draw the outcome."""
     from faying.contact.compare import compare
 
     inputs = mates.faces.rough.inputs
     with watched(mates) as seen:
         made, left_out = seen.laws(names)
-        if output.contact_map:
-            draw_contact(made, float(pressures[-1]), output.contact_map)
+        if contact_map:
+            draw_contact(made, float(pressures[-1]), contact_map)
         comparison = compare(made, pressures, left_out)
-    heat = conducted(comparison, mates.pair) if output.conductance else {}
-    if output.csv_file:
-        write_text(Path(output.csv_file), csv(comparison, heat))
-    if output.plot:
+    heat = conducted(comparison, mates.pair) if conductance else {}
+    if csv_file:
+        write_text(Path(csv_file), csv(comparison, heat))
+    if plot:
         from faying.contact.figure import curves
         from faying.style import save
 
-        save(curves(comparison.responses), output.plot)
-    if output.as_json:
+        save(curves(comparison.responses), plot)
+    if as_json:
         tree = {"mates": mates.line} | document(inputs, comparison, heat)
         click.echo(json_text(tree))
         return
