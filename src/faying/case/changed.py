@@ -8,8 +8,7 @@ import numpy as np
 from faying.case.case import Case
 from faying.case.solve import LoadedCase
 from faying.joint.joint_law import JointLaw
-from faying.reduction.reduce import Reduction
-from faying.reduction.together import Gapped, evaluate, train_together
+from faying.reduction.reduce import Gapped, Reduction
 from faying.typing import Array
 
 TOLERANCE = 2e-4  # of a frequency, where what is changed moves one by a thousandth and more
@@ -59,8 +58,9 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
         for one in changes
     ]
     ends = sorted({0, len(forces) - 1})
-    starts = train_together(reduction, [loads[k] for loads in every for k in ends], TOLERANCE)
+    states_at_ends = reduction.train_together([loads[k] for loads in every for k in ends], TOLERANCE)
+    starts = [state.displacement for state in states_at_ends]
     return [
-        np.stack([evaluate(reduction, one, starts[len(ends) * number]).frequencies for one in loads])
+        np.stack([reduction.evaluate_at(one, starts[len(ends) * number]).frequencies for one in loads])
         for number, loads in enumerate(every)
     ]

@@ -9,7 +9,7 @@ estimate that every evaluation carries.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -54,6 +54,20 @@ def pressed(interfaces: Sequence[Any], laws: Sequence[JointLaw], found: PreloadS
 def real_parts(values: Any) -> list[Array]:
     """Real and imaginary part; the real one alone where the other is zero."""
     return [values.real, values.imag] if np.any(values.imag) else [np.asarray(values.real)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gapped:
+    """One variant: the law of each joint, force of each bolt [N] (b,), friction and gap [m] (q,) of each joint.
+
+    start: coefficients of a like equilibrium, where one is known.
+    """
+
+    laws: Sequence[JointLaw]
+    forces: Array
+    friction: Sequence[float | None]
+    gaps: Sequence[Array]
+    start: Array | None = None
 
 
 class Reduction:
@@ -285,43 +299,14 @@ class Reduction:
         answer = self.factor.solve(residual)
         return float(np.sqrt(np.maximum(residual @ answer, 0.0)) / pressed(self.interfaces, laws, found)), answer
 
-    def train_static(
-        self,
-        laws: Sequence[JointLaw],
-        forces: Array,
-        friction: Sequence[float | None],
-        tolerance: float,
-        start: Array | None = None,
-    ) -> PreloadState:
-        """Enrich until the equilibrium of a variant is right to `tolerance` in energy; return it."""
-        error = np.inf
-        for _ in range(FEW_STEPS):
-            found = self.model.equilibrium_from(laws, forces, friction, start)
-            error, correction = self.static_error(laws, forces, friction, found)
-            if error < tolerance:
-                return found
-            start = found.displacement
-            self.static.add(correction[:, None])
-            self.refresh()
-        raise NotConverged(
-            f"reduction: {FEW_STEPS} enrichments leave the preload wrong by {error:.1e}; raise the tolerance"
-        )
+    def modal_error(self, laws: Sequence[JointLaw], pressures: Sequence[Array], which: Any = slice(None)) -> Array:
+        """Estimated relative error of the complex eigenvalues (m,) of a variant; which: of them, all where not given.
 
-    def modal_error(
-        self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float = 0.0, which: Any = slice(None)
-    ) -> tuple[Array, Array]:
-        """Estimated relative error of the complex eigenvalues (m,) of a variant, and what would correct it (n, k).
-
-        The square of the residual in the energy norm: eigenvalues err by the square of their vectors. What would
-        correct it is for the modes whose error exceeds the tolerance, real and imaginary parts where there is loss.
-        which: of the modes, all of them where not given.
+        The square of the residual in the energy norm: eigenvalues err by the square of their vectors.
         """
         parts, size = self.modal_parts(laws, pressures, which)
-        solved = [self.factor.solve(np.asfortranarray(part)) for part in parts]
-        energy = sum(np.einsum("ij,ij->j", part, answer) for part, answer in zip(parts, solved, strict=True))
-        error = np.asarray(energy / size)
-        poor = error > tolerance
-        return error, np.concatenate([answer[:, poor] / np.sqrt(size[poor]) for answer in solved], axis=1)
+        energy = sum(np.einsum("ij,ij->j", part, self.factor.solve(np.asfortranarray(part))) for part in parts)
+        return np.asarray(energy / size)
 
     def modal_parts(
         self, laws: Sequence[JointLaw], pressures: Sequence[Array], which: Any
@@ -365,25 +350,83 @@ class Reduction:
 
         Of the equilibrium that is what the frequencies change by under the pressures that one correction gives.
         """
-        modal, _ = self.modal_error(laws, found.pressures, np.inf, slice(count))
+        modal = self.modal_error(laws, found.pressures, slice(count))
         _, correction = self.static_error(laws, forces, friction, found)
         moved = [(interface.relative @ correction)[::3] for interface in self.interfaces]
         corrected = [law.pressure(-gap - by)[0] for law, gap, by in zip(laws, found.openings, moved, strict=True)]
         old, new = (self.model.modes(self.model.springs(laws, p))[0].real for p in (found.pressures, corrected))
         return float(modal.max() + np.abs(new / old - 1)[:count].max()) / 2  # of a square of a frequency
 
-    def train_dynamic(self, laws: Sequence[JointLaw], pressures: Sequence[Array], tolerance: float) -> None:
-        """Enrich until all modes of a variant are right; tolerance: of the complex eigenvalues."""
-        poor: Any = np.arange(self.model.count)
+    def at(self, variant: Gapped) -> ReducedModel:
+        """The bases as they are, with the gaps of a variant; `model` has them from then on."""
+        self.model = self.model.with_gaps(variant.gaps)
+        return self.model
+
+    def evaluate_at(self, variant: Gapped, start: Array) -> Variant:
+        """Modes of a variant in the bases as they are; start: coefficients of a like equilibrium."""
+        return self.at(variant).evaluate(variant.laws, variant.forces, variant.friction, start)
+
+    def train_together(self, variants: Sequence[Gapped], tolerance: float) -> list[PreloadState]:
+        """Make the bases fit several variants, which costs less than one after the other; return their equilibria.
+
+        A factor is read once for the corrections of all, and each block of new directions is projected once.
+        tolerance: relative error of a frequency. Raises NotConverged where a variant has no equilibrium, or its error
+        does not fall.
+        """
+        found = self._train_static(variants, STATIC_SHARE * tolerance)
+        self._train_dynamic(variants, found, 2 * tolerance)
+        return found
+
+    def _train_static(self, variants: Sequence[Gapped], tolerance: float) -> list[PreloadState]:
+        """Grow the basis for equilibrium until every variant is right to `tolerance` in energy; their equilibria."""
+        found: dict[int, PreloadState] = {}
+        poor, error = list(range(len(variants))), np.full(len(variants), np.inf)
         for _ in range(FEW_STEPS):
-            error, correction = self.modal_error(laws, pressures, tolerance, poor)
-            poor = poor[error > tolerance]  # the others only gain by what is added
-            if not len(poor):
-                return
-            new = self.dynamic.add(correction, least=LEFT_OUT * tolerance)
+            residuals = []
+            for k in poor:
+                one, start = variants[k], found[k].displacement if k in found else variants[k].start
+                found[k] = self.at(one).equilibrium_from(one.laws, one.forces, one.friction, start)
+                residuals.append(self.static_residual(one.laws, one.forces, one.friction, found[k]))
+            right = np.asfortranarray(np.stack(residuals, axis=1))
+            answers = self.factor.solve(right)
+            work = np.maximum(np.einsum("ij,ij->j", right, answers), 0.0)
+            error = np.sqrt(work) / [pressed(self.interfaces, variants[k].laws, found[k]) for k in poor]
+            far = ~(error < tolerance)
+            poor = [k for k, is_far in zip(poor, far, strict=True) if is_far]
+            if not poor:
+                return [found[k] for k in range(len(variants))]
+            self.static.add(answers[:, far])
             self.refresh()
-            if not new:
-                raise NotConverged(f"reduction: the modes stay wrong by {error.max():.1e} and nothing improves them")
+        what = f"the preload wrong by {error.max():.1e}" if len(variants) == 1 else f"{len(poor)} equilibria wrong"
+        raise NotConverged(f"reduction: {FEW_STEPS} enrichments leave {what}; raise the tolerance")
+
+    def _train_dynamic(self, variants: Sequence[Gapped], found: Sequence[PreloadState], tolerance: float) -> None:
+        """Grow the basis for vibration until all modes of every variant are right; tolerance: of the eigenvalues."""
+        poor: list[Any] = [np.arange(self.model.count)] * len(variants)
+        for _ in range(FEW_STEPS):
+            left = []
+            for k, one in enumerate(variants):
+                if len(poor[k]):
+                    self.at(one)
+                    left.append((k, *self.modal_parts(one.laws, found[k].pressures, poor[k])))
+            right = np.asfortranarray(np.concatenate([part for _, parts, _ in left for part in parts], axis=1))
+            answers = self.factor.solve(right)
+            energy = np.einsum("ij,ij->j", right, answers)
+            corrections, at, most = [], 0, 0.0
+            for k, parts, size in left:
+                spans = [slice(at + i * len(size), at + (i + 1) * len(size)) for i in range(len(parts))]
+                error = np.sum([energy[span] for span in spans], axis=0) / size
+                far, most = error > tolerance, max(most, float(error.max()))
+                corrections += [answers[:, span][:, far] / np.sqrt(size[far]) for span in spans]
+                poor[k] = poor[k][far]  # the others only gain by what is added
+                at += len(parts) * len(size)
+            corrections = [correction for correction in corrections if correction.shape[1]]
+            if not corrections:
+                return
+            if not self.dynamic.add(np.concatenate(corrections, axis=1), least=LEFT_OUT * tolerance):
+                what = f"the modes stay wrong by {most:.1e}" if len(variants) == 1 else "some modes stay wrong"
+                raise NotConverged(f"reduction: {what} and nothing improves them")
+            self.refresh()
         raise NotConverged(
             f"reduction: {FEW_STEPS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
         )
@@ -405,8 +448,8 @@ class Reduction:
         both from then on. Returns the coefficients from which a like variant may start.
         """
         self.model = self.model.with_gaps(gaps).with_scales(scales)
-        found = self.train_static(laws, forces, friction, STATIC_SHARE * tolerance, start)
-        self.train_dynamic(laws, found.pressures, 2 * tolerance)
+        one = Gapped(laws=laws, forces=forces, friction=friction, gaps=self.model.gaps, start=start)
+        (found,) = self.train_together([one], tolerance)
         _, vectors, _ = self.model.modes(self.model.springs(laws, found.pressures))
         self._note(laws, found, vectors)
         self.trained += 1

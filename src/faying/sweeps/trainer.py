@@ -160,7 +160,7 @@ class Trainer:
                 laws, forces, friction = self.recipe.laws(index)
                 reduction.model = self.recipe.model_at(reduction.model, index)
                 found = reduction.model.equilibrium(laws, forces, friction)
-                error, _ = reduction.modal_error(laws, found.pressures)
+                error = reduction.modal_error(laws, found.pressures)
                 balance, _ = reduction.static_error(laws, forces, friction, found)
             except FayingError:
                 continue
