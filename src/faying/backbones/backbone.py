@@ -181,13 +181,13 @@ def backbones(
     return tuple(made)
 
 
-def backbones_of(case: Case, choice: BackboneChoice, *, report: Report | None = None) -> tuple[Backbone, ...]:
+def backbones_of(case: Case, choice: BackboneChoice) -> tuple[Backbone, ...]:
     """Curves for every law and friction of a choice, at the greatest preload of a case that is ready to be solved.
 
     Raises: see `backbone`.
     """
     frictions = friction_of(case.study, choice)
-    progress = _Progress(report, max(len(choice.laws), 1) * len(frictions))
+    progress = _Progress(None, max(len(choice.laws), 1) * len(frictions))
     with CurveStore(None, "") as store:
         return tuple(_curves(case, choice, [len(case.study.loads) - 1], frictions, store, progress))
 

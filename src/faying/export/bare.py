@@ -25,7 +25,6 @@ def modes_with_joint(
     mass: str | Path | None = None,
     dofs: str | Path | None = None,
     count: int = 10,
-    solver: str | None = None,
 ) -> tuple[DampedModes, int]:
     """Elastic modes, with loss factors, of stiffness and mass from a file (as `read_matrices` takes) and the joint.
 
@@ -47,5 +46,5 @@ def modes_with_joint(
     speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in attachment.materials.values()]
     shift = 0.02 * max(speeds) / mesh.size
     check_modes(count + still + SPARE, K.shape[0])
-    found = lowest_modes(K, M, count + still + SPARE, shift_frequency=shift, solver=solver)
+    found = lowest_modes(K, M, count + still + SPARE, shift_frequency=shift)
     return damped_modes(found, K, M, C, rigid=still, count=count), still

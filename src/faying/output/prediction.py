@@ -144,12 +144,12 @@ def text(found: Prediction) -> str:
     return "\n".join([*parts, *(textwrap.fill(f"note: {note.text}", WIDTH) for note in found.notes)])
 
 
-def _wrapped(rows: Rows, width: int = WIDTH) -> str:
-    """Two columns, the second wrapped to the width."""
+def _wrapped(rows: Rows) -> str:
+    """Two columns, the second wrapped to the terminal."""
     first = max((len(row[0]) for row in rows), default=0) + 2
     lines = []
     for head, words in rows:
-        parts = textwrap.wrap(words, max(width - first, 30)) or [""]
+        parts = textwrap.wrap(words, max(WIDTH - first, 30)) or [""]
         lines.append(head.ljust(first) + parts[0])
         lines += [" " * first + part for part in parts[1:]]
     return "\n".join(line.rstrip() for line in lines)

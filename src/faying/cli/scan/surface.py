@@ -97,8 +97,8 @@ def table(document: dict[str, Any]) -> str:
     """Format the document for the terminal."""
     from faying.output import table as tables
 
-    def m(value: float | None, digits: int = 4) -> str:
-        return "-" if value is None else show(value, "m", digits=digits)
+    def m(value: float | None) -> str:
+        return "-" if value is None else show(value, "m")
 
     points, size = document["points"], document["size"]
     areal = len(points) == 2
