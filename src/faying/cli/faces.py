@@ -26,10 +26,7 @@ def command(geometry: Path, part: str | None, unit: str | None, as_json: bool) -
     facts = read(geometry, unit)
     if part is not None and part not in facts.by_part:
         raise InputError(f"no part is called {part!r}; the parts are {', '.join(map(repr, facts.by_part))}")
-    if as_json:
-        click.echo(json_text(to_dict(facts, part)))
-        return
-    click.echo(text(facts, part))
+    click.echo(json_text(to_dict(facts, part)) if as_json else text(facts, part))
 
 
 def read(geometry: Path, unit: str | None) -> Any:

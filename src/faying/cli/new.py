@@ -33,10 +33,7 @@ def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: boo
     proposal = new.find(step, unit)
     answers = new.Answers(scan=scan) if silent else asked(proposal, scan)
     written = new.write(proposal, step, out, answers, force=force)
-    if as_json:
-        click.echo(json_text(to_dict(written)))
-        return
-    click.echo("\n".join(new.summary(written, out)))
+    click.echo(json_text(to_dict(written)) if as_json else "\n".join(new.summary(written, out)))
 
 
 def asked(proposal: Any, scan: Path | None) -> Any:

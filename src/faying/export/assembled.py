@@ -19,8 +19,7 @@ from faying.typing import Array, Index
 class Assembled:
     """Stiffness [N/m] and mass [kg] (n, n), sparse CSR; dofs (n, 2): node and direction; a frequency to shift by [Hz].
 
-    still: rigid motions that nothing resists, None where nobody has counted them; points: coordinates (n / 3, 3) [m] of
-    the nodes, where known.
+    points: coordinates (n / 3, 3) [m] of the nodes, where known.
     """
 
     stiffness: Any
@@ -28,7 +27,6 @@ class Assembled:
     dofs: Index
     shift_frequency: float
     source: str
-    still: int | None = None
     points: Array | None = None
 
     @classmethod
@@ -44,7 +42,6 @@ class Assembled:
             stiffness=stiffness,
             mass=structure.dynamic_matrices[1],
             dofs=dofs,
-            still=structure.rigid_count,
             shift_frequency=study.modes.shift_frequency or structure.shift_frequency,
             source=study.title,
             points=structure.mesh.points,
