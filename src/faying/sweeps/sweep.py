@@ -27,7 +27,7 @@ MOST_LAWS = 100  # looked at before there is a mesh
 
 def evaluate(model: ReducedModel, recipe: VariantBuilder, indices: Sequence[int]) -> dict[str, Array]:
     """Evaluate some points; rows of what the sweep stores, NaN where a point has no answer, and `reasons`."""
-    weights, lost = np.concatenate(model.weights), np.full(model.count, np.nan)
+    weights, unknown = np.concatenate(model.weights), np.full(model.count, np.nan)
     start: Array | None = None
 
     def answer(index: int) -> dict[str, Any]:
@@ -39,14 +39,14 @@ def evaluate(model: ReducedModel, recipe: VariantBuilder, indices: Sequence[int]
         open_share, above_range = contact_shares(weights, laws, found.preload.pressures)
         return {
             "frequencies": found.frequencies,
-            "loss_factors": found.loss_factors if any(law.predicts_loss for law in laws) else lost,
+            "loss_factors": found.loss_factors if any(law.predicts_loss for law in laws) else unknown,
             "estimate": found.estimate.max(),
             "greatest_pressure": np.concatenate(found.preload.pressures).max(),
             "open_share": open_share,
             "above_range_share": above_range,
         }
 
-    nothing = {name: lost if name in OF_MODES else np.nan for name in SweepStore.COLUMNS}
+    nothing = {name: unknown if name in OF_MODES else np.nan for name in SweepStore.COLUMNS}
     return rows_of(indices, answer, nothing)
 
 
