@@ -7,11 +7,10 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.surface.convention import prefactor
-from faying.surface.estimators.base import with_intervals
-from faying.surface.estimators.spectral import clean_spectrum
+from faying.surface.estimators.spectral import clean_spectrum, of_law
 from faying.surface.form import Prepared, prepared
 from faying.surface.fractal import Facts, FractalFit, result
-from faying.surface.powerlaw import estimate_from, fit, fit_band, smearing, supported_band
+from faying.surface.powerlaw import fit, fit_band, smearing, supported_band
 from faying.surface.scan import Scan
 from faying.surface.spectrum import Spectrum
 from faying.surface.summits import summits
@@ -126,19 +125,11 @@ def combine(
         law, notes = fit_band(joint, low, high)
     except NotConverged as fault:
         raise InputError(f"the scans share too few wavelengths ({fault})") from fault
-    estimate = with_intervals(
-        *estimate_from(law),
-        law.pivot,
-        c,
-        band=(1 / float(law.used[-1]), 1 / float(law.used[0])),
-        misfit=law.misfit,
-        notes=notes,
-    )
     parts = [summits(r) for r in ready]
     m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
     facts = _facts(m0, ready, (scan_a, scan_b))
     return Combined(
-        fit=result(estimate, facts, method="psd", convention=convention, gamma=gamma, drawn=joint),
+        fit=result(of_law(law, c, notes=notes), facts, method="psd", convention=convention, gamma=gamma, drawn=joint),
         Rq=m0**0.5,
         m0=m0,
         m2=m2,

@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.surface.form import Lines
-from faying.surface.scan import Profile
+from faying.surface.scan import sides_of, steps_of
 
 ALPHA = (log(2) / pi) ** 0.5  # half the amplitude passes at the cut-off
 
@@ -21,8 +21,7 @@ def gaussian_lowpass(scan: Lines, cutoff: float) -> Lines:
     """
     from scipy.ndimage import gaussian_filter
 
-    steps = (scan.spacing,) if isinstance(scan, Profile) else (scan.spacing[1], scan.spacing[0])
-    side = min(n * d for n, d in zip(scan.heights.shape, steps, strict=True))
+    steps, side = steps_of(scan), min(sides_of(scan))
     if not 2 * max(steps) <= cutoff <= side:
         raise InputError(
             f"cutoff = {cutoff} m: give a wavelength between twice the spacing, {2 * max(steps):.4g} m, and the side, "

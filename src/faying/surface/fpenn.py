@@ -8,7 +8,7 @@ and (2 Ds - 2) ln(G/L), which is smooth where ln G is not. The exact root of `mo
 without error, so the network is here to compare with the paper, and its errors against that root are stored with it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from math import exp, log
 from pathlib import Path
@@ -49,17 +49,8 @@ def _weights() -> dict[str, Any]:
 
 def trained_range() -> TrainedRange:
     """Return the range and the errors stored with the weights."""
-    w = _weights()
-    pairs = {name: (float(w[name][0]), float(w[name][1])) for name in ("D", "log_ratio")}
-    return TrainedRange(
-        D=pairs["D"],
-        terms=(int(w["terms"][0]), int(w["terms"][1])),
-        log_ratio=pairs["log_ratio"],
-        error_D=float(w["error_D"]),
-        rms_D=float(w["rms_D"]),
-        error_log_level=float(w["error_log_level"]),
-        rms_log_level=float(w["rms_log_level"]),
-    )
+    stored: dict[str, Any] = {one.name: _weights()[one.name].tolist() for one in fields(TrainedRange)}
+    return TrainedRange(**stored | {name: tuple(stored[name]) for name in ("D", "terms", "log_ratio")})
 
 
 def network(inputs: Array, weights: dict[str, Any]) -> Array:

@@ -14,7 +14,7 @@ from faying.surface.estimators.base import Estimate, EstimateScatter
 from faying.surface.estimators.table import ESTIMATORS, METHODS
 from faying.surface.form import Prepared, prepared
 from faying.surface.roughness import roughness
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import Profile, Scan, sides_of, steps_of
 from faying.surface.spectrum import Spectrum
 
 if TYPE_CHECKING:
@@ -139,11 +139,11 @@ class Facts:
     @classmethod
     def of(cls, scan: Scan | Profile, ready: Prepared) -> "Facts":
         """Return the facts of a scan and of its prepared heights."""
-        rough = roughness(ready)
+        rough, sides = roughness(ready), sides_of(scan)
         return cls(
             Rq=rough.Rq,
             Ra=rough.Ra,
-            length=scan.length if isinstance(scan, Profile) else float(np.prod(scan.size)) ** 0.5,
+            length=float(np.prod(sides)) ** (1 / len(sides)),
             missing=ready.missing,
             spikes=ready.spikes,
             areal=isinstance(scan, Scan),
@@ -219,8 +219,7 @@ def _limits(ready: Prepared, band: object) -> tuple[float, float] | None:
     if band is None:
         return None
     scan = ready.scan
-    longest = scan.length if isinstance(scan, Profile) else min(scan.size)
-    shortest = 2 * (scan.spacing if isinstance(scan, Profile) else max(scan.spacing))
+    longest, shortest = min(sides_of(scan)), 2 * max(steps_of(scan))
     if not isinstance(band, list | tuple | np.ndarray) or len(band) != 2:
         raise InputError(f"band = {shown(band)}; give the shortest and the longest wavelength in metres")
     low, high = sorted(number(wave, "band", "m", least=0) for wave in band)

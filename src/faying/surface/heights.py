@@ -1,9 +1,11 @@
 """What a scan and a profile do alike: roughness, fractal dimension, levelling, figures."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
+from faying.checks import text
 from faying.errors import FayingError, InputError
 from faying.style import Summary
 
@@ -143,6 +145,12 @@ class Heights(Summary):
         from faying.surface.figure import overview_of
 
         return overview_of(self._self, axes, degree=degree)
+
+    def with_heights(self, heights: Any, note: str = "") -> Self:
+        """Return the same scan or profile with other heights [m] and one more line of history."""
+        of = self._self
+        history = (*of.history, note) if text(note, "note") else of.history
+        return cast("Self", replace(of, heights=heights, history=history))
 
     def _statistics(self) -> tuple[str, str]:
         """Rms height as a line of the summary: its name and its text, or why there is none."""

@@ -7,14 +7,14 @@ The bins' means follow a gamma law; maximising its quasi-likelihood (Whittle's a
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
-from math import pi
 from typing import final
 
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.surface.spectrum import Spectrum
+from faying.surface.spectrum import Spectrum, white_shape
 from faying.typing import Array, Mask
 from faying.units import show
 
@@ -66,7 +66,6 @@ class _Bins:
     x: Array
     y: Array
     weight: Array
-    shape: Array
     pivot: float
 
     @classmethod
@@ -75,23 +74,21 @@ class _Bins:
         f = spectrum.frequency[use]
         if len(f) < 5:
             raise NotConverged(f"only {len(f)} bins of frequency are in the band {low:.4g} .. {high:.4g} 1/m; widen it")
-        shape = 2 * pi * f if spectrum.axes == 2 else np.full(len(f), 2.0)
         weight = 1 / spectrum.spread[use] ** 2
         pivot = float(np.exp(np.average(np.log(f), weights=weight)))
         return cls(
             spectrum=spectrum,
             f=f,
             x=np.log(f / pivot),
-            y=spectrum.density[use] / shape,
+            y=spectrum.density[use] / white_shape(f, spectrum.axes),
             weight=weight,
-            shape=shape,
             pivot=pivot,
         )
 
     @property
     def extra(self) -> float:
         """What the areal density falls by more than the radial one."""
-        return 1.0 if self.spectrum.axes == 2 else 0.0
+        return self.spectrum.axes - 1.0
 
     def start(self) -> Array:
         """A weighted straight line in the logarithm: ln level, slope, noise/level."""
@@ -163,14 +160,14 @@ def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> F
     response[2] = np.exp(theta[0]) * (response[2] + theta[2] * response[0])
     misfit = float(np.sum(bins.weight * (bins.y / mu - 1) ** 2)) / max(len(bins.f) - int(free.sum()), 1)
     return FittedPowerLaw(
-        log_level=float(theta[0]) + (np.log(2 * pi * bins.pivot) if bins.extra else np.log(2.0)),
+        log_level=float(theta[0]) + np.log(white_shape(bins.pivot, spectrum.axes)),
         slope=float(theta[1]),
         noise=float(theta[2] * np.exp(theta[0])),
         pivot=bins.pivot,
         covariance=covariance * max(1.0, misfit),
         misfit=misfit,
         used=bins.f,
-        expected=mu * bins.shape,
+        expected=mu * white_shape(bins.f, spectrum.axes),
         response=response,
     )
 
@@ -270,11 +267,7 @@ def fit_band(
     if fixed:
         return law, ()
     tried: list[tuple[FittedPowerLaw, float, float]] = []
-    for bottom, top in _bands(low, high):
-        try:
-            law = fit(spectrum, bottom, top)
-        except NotConverged:
-            continue
+    for law, bottom, top in _parts(spectrum, low, high):
         tried.append((law, bottom, top))
         if not _passes(spectrum, law, bottom, top):
             continue
@@ -290,14 +283,14 @@ def fit_band(
     )
 
 
-def _bands(low: float, high: float) -> Iterator[tuple[float, float]]:
-    """The whole band, then its parts, the widest first, down to a factor of 5."""
-    yield low, high
-    for total in range(1, int(2 * np.log2(high / low) + 1e-9) + 1):
+def _parts(spectrum: Spectrum, low: float, high: float) -> Iterator[tuple[FittedPowerLaw, float, float]]:
+    """Fit the whole band, then its parts, the widest first, down to a factor of 5; those that can be fitted."""
+    for total in range(int(2 * np.log2(high / low) + 1e-9) + 1):
         for a in range(total + 1):
             bottom, top = low * 2 ** (a / 2), high / 2 ** ((total - a) / 2)
-            if top >= 5 * bottom:
-                yield bottom, top
+            if top >= 5 * bottom or total == 0:
+                with suppress(NotConverged):
+                    yield fit(spectrum, bottom, top), bottom, top
 
 
 def _beyond(
@@ -307,11 +300,7 @@ def _beyond(
     flat, start, end = plateau
     while start < end / 2:
         start *= 2**0.5
-    for bottom, top in _bands(start, high) if high >= 5 * start else ():
-        try:
-            law = fit(spectrum, bottom, top)
-        except NotConverged:
-            continue
+    for law, bottom, top in _parts(spectrum, start, high) if high >= 5 * start else ():
         if _passes(spectrum, law, bottom, top) and not _is_plateau(law):
             return law, (*_cut_in_words(low, high, bottom, top), *_roll_off_in_words(spectrum, flat, law))
     return flat, (
@@ -329,7 +318,7 @@ def _is_plateau(law: FittedPowerLaw) -> bool:
 
 def _roll_off_in_words(spectrum: Spectrum, plateau: FittedPowerLaw, law: FittedPowerLaw) -> tuple[str, ...]:
     """Where the law meets the mean level of the plateau, both as two-sided densities (areal for a scan)."""
-    turn = 1 if spectrum.axes == 2 else 0
+    turn = spectrum.axes - 1
     level = float(np.mean(np.log(plateau.expected / plateau.used**turn)))
     corner = law.pivot * float(np.exp((law.log_level - turn * np.log(law.pivot) - level) / (law.slope + turn)))
     return (
@@ -354,7 +343,7 @@ def _cut_in_words(low: float, high: float, bottom: float, top: float) -> tuple[s
 
 
 def _passes(spectrum: Spectrum, law: FittedPowerLaw, bottom: float, top: float) -> bool:
-    level = np.exp(law.log_level) / (2 * pi * law.pivot if spectrum.axes == 2 else 2.0)
+    level = np.exp(law.log_level) / white_shape(law.pivot, spectrum.axes)
     if law.misfit > 1.6 or law.noise / level < -3 * law.covariance[2, 2] ** 0.5:
         return False
     octave = (spectrum.frequency >= bottom) & (spectrum.frequency < 2 * bottom) & (spectrum.density > 0)
@@ -376,15 +365,9 @@ def _predict(spectrum: Spectrum, law: FittedPowerLaw, f: Array) -> tuple[Array, 
     smear, dsmear = smearing(spectrum, f, law.slope)
     x = np.log(f / law.pivot)
     power = np.exp(law.log_level - law.slope * x)
-    shape = 2 * pi * f if spectrum.axes == 2 else np.full(len(f), 2.0)
-    level = np.exp(law.log_level) / (2 * pi * law.pivot if spectrum.axes == 2 else 2.0)
+    shape = white_shape(f, spectrum.axes)
+    level = np.exp(law.log_level) / white_shape(law.pivot, spectrum.axes)
     mean = power * smear + law.noise * shape
     mean = np.maximum(mean, 0.02 * power)
     jac = np.stack([np.ones(len(f)), power * (dsmear - smear * x) / mean, level * shape / mean], axis=1)
     return mean, np.sqrt(np.einsum("ij,jk,ik->i", jac, law.covariance, jac))
-
-
-def estimate_from(law: FittedPowerLaw) -> tuple[float, float, Array]:
-    """Return D, ln S(pivot) and the covariance of (ln S(pivot), D), with D = (7 - slope)/2."""
-    turn = np.array([[1.0, 0.0], [0.0, -0.5]])
-    return (7 - law.slope) / 2, law.log_level, turn @ law.covariance[:2, :2] @ turn.T

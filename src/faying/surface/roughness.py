@@ -8,7 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.style import Summary
 from faying.surface.form import Prepared, prepared
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import Profile, Scan, steps_of
 from faying.typing import Array
 from faying.units import show
 
@@ -125,7 +125,7 @@ def roughness(scan: Scan | Profile | Prepared, *, degree: int = 1) -> Roughness:
     known = known - known.mean()
     rq = float(np.sqrt(np.mean(known**2)))
     holes = np.where(ready.known, z, np.nan)
-    steps = [ready.scan.spacing] if z.ndim == 1 else [ready.scan.spacing[1], ready.scan.spacing[0]]
+    steps = steps_of(ready.scan)
     slopes = [np.diff(holes, axis=axis) / step for axis, step in enumerate(steps)]
     return Roughness(
         Rq=rq,

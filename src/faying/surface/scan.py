@@ -1,11 +1,11 @@
 """Measured heights with their spacing: frozen, in metres, missing points as NaN."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Self, final
 
 import numpy as np
 
-from faying.checks import instance, number, shown, text, whole
+from faying.checks import instance, number, shown, whole
 from faying.errors import InputError, ReadError
 from faying.memory import GB, available
 from faying.surface.heights import Heights
@@ -133,10 +133,6 @@ class Scan(Heights):
             **self._origin(),
         }
 
-    def with_heights(self, heights: Any, note: str = "") -> Self:
-        """Return the same scan with other heights [m] and one more line of history."""
-        return replace(self, heights=heights, history=(*self.history, note) if text(note, "note") else self.history)
-
     def cropped(self, share: float) -> Self:
         """Return the middle part of the scan.
 
@@ -223,9 +219,15 @@ class Profile(Heights):
             **self._origin(),
         }
 
-    def with_heights(self, heights: Any, note: str = "") -> Self:
-        """Return the same profile with other heights [m] and one more line of history."""
-        return replace(self, heights=heights, history=(*self.history, note) if text(note, "note") else self.history)
+
+def steps_of(scan: Scan | Profile) -> tuple[float, ...]:
+    """Spacings [m] in the order of the axes of the heights."""
+    return (scan.spacing,) if isinstance(scan, Profile) else (scan.spacing[1], scan.spacing[0])
+
+
+def sides_of(scan: Scan | Profile) -> tuple[float, ...]:
+    """Sides [m] in the order of the axes of the heights."""
+    return tuple(n * step for n, step in zip(scan.heights.shape, steps_of(scan), strict=True))
 
 
 def usable(scan: Scan | Profile, *, least: int = 16) -> None:

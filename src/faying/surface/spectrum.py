@@ -7,11 +7,11 @@ over frequency is the mean square height in both cases.
 
 from dataclasses import dataclass
 from math import pi
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import Profile, Scan, sides_of, steps_of
 from faying.typing import Array, Mask
 
 # Hann window: sum of the squared correlations between neighbouring Fourier coefficients, per axis (1 + 2 (4/9 + 1/36))
@@ -55,6 +55,11 @@ def _running_median(values: Array, reach: int = 6) -> Array:
     """Median over up to `reach` bins on either side, not below 1."""
     spans = [values[max(0, i - reach) : i + reach + 1] for i in range(len(values))]
     return np.array([max(1.0, float(np.median(span))) for span in spans])
+
+
+def white_shape(f: Any, axes: int) -> Any:
+    """Density of white noise whose two-sided density, areal for a scan, is 1."""
+    return 2 * pi * f if axes == 2 else 2.0 + 0.0 * f
 
 
 def _hann(count: int) -> Array:
@@ -106,10 +111,8 @@ def binned(
     exclude: Mask | None = None,
 ) -> Spectrum:
     """Average a periodogram over directions and in bins of frequency; see `spectrum`."""
-    sizes = (scan.length,) if isinstance(scan, Profile) else scan.size
-    lowest = 1 / min(sizes)
-    spacing = scan.spacing if isinstance(scan, Profile) else max(scan.spacing)
-    nyquist = 0.5 / spacing
+    sides = sides_of(scan)
+    lowest, nyquist = 1 / min(sides), 0.5 / max(steps_of(scan))
     edges = _edges(lowest, nyquist, ratio)
     # index of the bin: through a table over steps of lowest/8, faster than searching for every coefficient
     table = np.digitize(np.arange(0, int(edges[-1] * 8) + 2) / 8 + 1 / 16, edges)
@@ -139,14 +142,14 @@ def binned(
     f = centre / count
     return Spectrum(
         frequency=f,
-        density=mean * (2 * pi * f if len(axes) == 2 else 2.0),
+        density=mean * white_shape(f, len(axes)),
         count=count,
         spread=np.sqrt(HANN_CORRELATION ** len(axes) * uneven / count),
         uneven=uneven,
         width=np.diff(edges)[use],
         lowest=lowest,
         nyquist=nyquist,
-        curvature=float(np.mean([1 / s**2 for s in sizes])),
+        curvature=float(np.mean([1 / s**2 for s in sides])),
         axes=len(axes),
     )
 
@@ -189,8 +192,7 @@ def structure_function(
     mask = ~np.isnan(z) if known is None else known & ~np.isnan(z)
     values = np.where(mask, z, 0.0)
     values = np.where(mask, values - values.sum() / mask.sum(), 0.0)
-    spacing = [scan.spacing] if isinstance(scan, Profile) else [scan.spacing[1], scan.spacing[0]]
-    side = min(n * d for n, d in zip(z.shape, spacing, strict=True))
+    spacing, side = steps_of(scan), min(sides_of(scan))
     reach = [max(2, int(longest * side / d)) for d in spacing]
     shape = tuple(fft.next_fast_len(n + r + 1, real=True) for n, r in zip(z.shape, reach, strict=True))
     total, pairs = _products(values, mask.astype(float), shape)

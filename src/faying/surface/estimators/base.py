@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.surface.convention import G_from_density, density
 from faying.surface.form import Prepared
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import Profile, Scan, steps_of
 from faying.typing import Array
 
 Z95 = 1.959963984540054  # two-sided 95 % point of the normal distribution
@@ -104,5 +104,4 @@ def with_intervals(
 
 def white_rms(scan: Scan | Profile, noise: float) -> float:
     """Rms height [m] of a white level of the two-sided density."""
-    steps = scan.spacing if isinstance(scan, Scan) else (scan.spacing,)
-    return float((max(noise, 0.0) / float(np.prod(steps))) ** 0.5)
+    return float((max(noise, 0.0) / float(np.prod(steps_of(scan)))) ** 0.5)

@@ -6,7 +6,16 @@ import numpy as np
 
 from faying.surface.convention import structure_coefficient
 from faying.surface.estimators.base import Estimate, Estimator, Limits
-from faying.surface.estimators.scaling import cut_log, inside, rows_of, size_band, sizes_of, straight, through_parts
+from faying.surface.estimators.scaling import (
+    cut_log,
+    inside,
+    mean_law,
+    rows_of,
+    size_band,
+    sizes_of,
+    straight,
+    through_parts,
+)
 from faying.surface.form import Prepared
 from faying.typing import Array, Mask
 
@@ -29,9 +38,8 @@ def estimate(ready: Prepared, limits: Limits, c: float) -> Estimate:
             slope, intercept = straight(x, np.array(y))
             D = 3 - slope
             level = 2 * intercept + log(pi / 2) - log(2 * structure_coefficient(inside(D)))
-            found.append((D, level - cut_log(inside(D), z.ndim == 2) - (7 - 2 * D) * log(1 / (low * high) ** 0.5)))
-        D = float(np.mean([d for d, _ in found]))
-        return D, float(np.mean([v for _, v in found])) + (7 - 2 * D) * log(1 / (low * high) ** 0.5)
+            found.append((D, level - cut_log(inside(D), z.ndim == 2)))
+        return mean_law(found, low, high)
 
     return through_parts(ready, c, local, *size_band(ready, limits, 2, 1 / 16), "Higuchi's length")
 

@@ -4,7 +4,7 @@ Each returns D and, through its closed transfer function, ln of the density S(f)
 the spread between parts of the scan, Student's t; it holds no bias, see `selftest`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import log
 
 import numpy as np
@@ -13,16 +13,12 @@ from faying.errors import FayingError, NotConverged
 from faying.surface.convention import cut_factor
 from faying.surface.estimators.base import Z95, Estimate, Limits, with_intervals
 from faying.surface.form import Prepared
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import sides_of, steps_of
 from faying.typing import Array, Mask
 
 Part = tuple[Array, Mask]
 # heights, known points, spacings in the order of the axes, smallest and largest size [m] -> D, ln B
 Local = Callable[[Array, Mask, tuple[float, ...], float, float], tuple[float, float]]
-
-
-def _steps(scan: Scan | Profile) -> tuple[float, ...]:
-    return (scan.spacing,) if isinstance(scan, Profile) else (scan.spacing[1], scan.spacing[0])
 
 
 def side_of(z: Array, steps: tuple[float, ...]) -> float:
@@ -45,7 +41,7 @@ def through_parts(ready: Prepared, c: float, local: Local, low: float, high: flo
     from scipy.stats import t as student
 
     scan = ready.scan
-    steps, z = _steps(scan), scan.heights
+    steps, z = steps_of(scan), scan.heights
     if high < 3 * low:
         raise NotConverged(f"{scan.source}: sizes {low:.3g} .. {high:.3g} m are too few for {name}; use method psd")
     D, level = local(z, ready.known, steps, low, high)
@@ -81,13 +77,19 @@ def size_band(ready: Prepared, limits: Limits, points: float, share: float) -> t
     """
     if limits is not None:
         return limits
-    steps = _steps(ready.scan)
-    low = points * max(steps)
+    low = points * max(steps_of(ready.scan))
     if ready.scan.instrument.resolution:
         low = max(low, ready.scan.instrument.resolution)
-    side = side_of(ready.scan.heights, steps)
+    side = min(sides_of(ready.scan))
     # a scan of a hundred points or so: larger sizes than are good rather than none
     return low, max(share * side, min(3.2 * low, side / 3))
+
+
+def mean_law(found: Sequence[tuple[float, float]], low: float, high: float) -> tuple[float, float]:
+    """Mean D and ln B of laws, the levels averaged at the middle of the band."""
+    middle = log(1 / (low * high) ** 0.5)
+    D = float(np.mean([d for d, _ in found]))
+    return D, float(np.mean([v - (7 - 2 * d) * middle for d, v in found])) + (7 - 2 * D) * middle
 
 
 def straight(x: Array, y: Array) -> tuple[float, float]:

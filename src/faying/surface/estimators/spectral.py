@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi
 from typing import final
 
 import numpy as np
@@ -13,7 +12,7 @@ from faying.surface.form import Prepared
 from faying.surface.lines import find_lines
 from faying.surface.powerlaw import FittedPowerLaw, fit_band, smearing, supported_band
 from faying.surface.scan import Profile, Scan
-from faying.surface.spectrum import Spectrum, binned, periodogram
+from faying.surface.spectrum import Spectrum, binned, periodogram, white_shape
 from faying.typing import Array
 
 
@@ -38,6 +37,15 @@ def clean_spectrum(scan: Scan | Profile) -> tuple[Spectrum, tuple[str, ...]]:
         return binned(scan, power, frequency, axes), ()
     words = f"tool marks: {100 * share:.2g} % of the power is in sharp peaks of the spectrum; D and G exclude it"
     return binned(scan, power, frequency, axes, exclude=marked), (words,)
+
+
+def of_law(law: FittedPowerLaw, c: float, **rest: object) -> Estimate:
+    """The estimate that a fitted power law makes, D = (7 - slope)/2."""
+    turn = np.array([[1.0, 0.0], [0.0, -0.5]])
+    covariance = turn @ law.covariance[:2, :2] @ turn.T
+    band = 1 / float(law.used[-1]), 1 / float(law.used[0])
+    D = (7 - law.slope) / 2
+    return with_intervals(D, law.log_level, covariance, law.pivot, c, band=band, misfit=law.misfit, **rest)
 
 
 @final
@@ -75,7 +83,7 @@ def clean_band(ready: Prepared, limits: Limits) -> FittedBand:
         frequency=f,
         width=s.width[use] * s.lowest,
         density=s.density[use],
-        shape=2 * pi * f if s.axes == 2 else np.full(len(f), 2.0),
+        shape=white_shape(f, s.axes),
         smear=smearing(s, f, law.slope)[0],
         spread=s.spread[use] * max(1.0, law.misfit) ** 0.5,
         notes=notes,

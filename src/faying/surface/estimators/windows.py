@@ -5,7 +5,7 @@ from math import log, pi
 
 import numpy as np
 
-from faying.surface.estimators.scaling import Local, cut_log, inside, rows_of, sizes_of, straight
+from faying.surface.estimators.scaling import Local, cut_log, inside, mean_law, rows_of, sizes_of, straight
 from faying.typing import Array, Mask
 
 
@@ -64,8 +64,7 @@ def in_windows(order: int, integrated: bool) -> Local:
             D = 3 - slope / 2 + (1.0 if integrated else 0.0)
             # F^2 = B w^(6-2D) (w^2) kappa(D)
             level = intercept - log(window_transfer(inside(D), order, integrated)) - cut_log(inside(D), z.ndim == 2)
-            found.append((D, level - (7 - 2 * D) * log(1 / (low * high) ** 0.5)))
-        D = float(np.mean([d for d, _ in found]))
-        return D, float(np.mean([v for _, v in found])) + (7 - 2 * D) * log(1 / (low * high) ** 0.5)
+            found.append((D, level))
+        return mean_law(found, low, high)
 
     return local

@@ -14,7 +14,7 @@ from typing import Any, final
 import numpy as np
 
 from faying.errors import InputError
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import Profile, Scan, steps_of
 
 # each prints points (ny, nx), spacing (dx, dy) [m] and the standard deviation of the heights as read [m]
 _TAIL = """
@@ -112,10 +112,9 @@ def compare(name: str, scan: Scan | Profile, seen: dict[str, Any]) -> Opinion:
     own = list(scan.heights.shape)
     if seen["points"] != own:
         faults.append(f"points {seen['points']} against {own}")
-    spacing = [scan.spacing] if isinstance(scan, Profile) else list(scan.spacing)
     faults += [
         f"spacing {theirs:.6g} m against {ours:.6g} m"
-        for theirs, ours in zip(seen["spacing"], spacing, strict=False)
+        for theirs, ours in zip(seen["spacing"], steps_of(scan)[::-1], strict=False)
         if abs(theirs / ours - 1) > 1e-3
     ]
     deviation = float(np.nanstd(scan.heights))

@@ -11,7 +11,7 @@ from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
 from faying.files import end_of
 from faying.surface.files.text import TextLayout
-from faying.surface.scan import Profile, Scan
+from faying.surface.scan import Profile, Scan, sides_of, steps_of
 from faying.units import scale
 
 ASK = 'for example read_scan("{name}", xy_unit="mm", z_unit="um"), or on the command line --xy-unit mm --z-unit um'
@@ -181,7 +181,7 @@ def _resized(scan: Scan | Profile, lateral: Lateral) -> Scan | Profile:
     own = scan.spacing if isinstance(scan, Scan) else (scan.spacing, steps[1])
     if all(abs(a / b - 1) < 1e-6 for a, b in zip(steps, own, strict=True)):
         return scan
-    sizes = scan.size if isinstance(scan, Scan) else (scan.length,)
+    sizes = sides_of(scan)[::-1]
     if _believable(sizes, own):
         shown = " x ".join(f"{s:.4g} m" for s in sizes)
         raise InputError(f"{scan.source}: the file states its size, {shown}; leave out size and spacing")
@@ -230,8 +230,7 @@ OUTLYING = 100.0  # sides of the scan: no point of a face lies so far from the o
 
 def plausible(scan: Scan | Profile) -> None:
     """Raise ReadError where sizes or heights cannot be those of a measured surface: as a rule, a wrong unit."""
-    sizes = scan.size if isinstance(scan, Scan) else (scan.length,)
-    spacing = scan.spacing if isinstance(scan, Scan) else (scan.spacing,)
+    sizes, spacing = sides_of(scan)[::-1], steps_of(scan)
     hint = "check the unit that the file states or that you gave"
     if not _believable(sizes, spacing):
         shown = " x ".join(f"{s:.3g} m" for s in sizes)

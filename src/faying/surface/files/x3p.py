@@ -12,6 +12,7 @@ from math import isfinite, prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
+from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -227,7 +228,7 @@ def write(scan: Scan | Profile, path: Path, *, precision: str = "F") -> None:
         dy=dy,
         precision=precision,
         z_axis=z_axis,
-        comment=_escape(scan.source),
+        comment=escape(scan.source),
         nx=scan.heights.shape[-1],
         ny=len(scan.heights) if isinstance(scan, Scan) else 1,
         digest=hashlib.md5(data, usedforsecurity=False).hexdigest().upper(),
@@ -253,7 +254,3 @@ def _packed(z: Array, precision: str) -> tuple[bytes, str]:
     step = max(float(np.ptp(z)) / (2 * span - 2), 1e-300)
     data = np.rint((z - offset) / step).astype(NUMBERS[precision]).tobytes()
     return data, f"<Increment>{step!r}</Increment><Offset>{offset!r}</Offset>"
-
-
-def _escape(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
