@@ -13,88 +13,35 @@ from faying.files import load_arrays, write_arrays, write_text
 from faying.study.study import Study
 
 
-class PartFolder:
-    """The folder, locked and labelled with what it belongs to.
+class PartFile:
+    """What long work keeps in the folder OUT.part, locked and labelled with what it belongs to.
+
+    Without an output nothing is kept. It is a context: at the end it lets go of the folder, and removes it where
+    Faying has refused the work before anything was kept, so that it bars no other.
 
     Args:
-        out: The output, ending in .nc.
-        fingerprint: What tells this work from another.
+        out: The output, ending in .nc, or None.
+        fingerprint: What tells this work from another, from `fingerprint`.
         what: The name of such work in messages, and of the label.
 
     Raises:
         InputError: The output is not an .nc file in an existing folder, is in use, or has other work in it.
     """
 
-    def __init__(self, out: Path, fingerprint: str, *, what: str) -> None:
-        if out.suffix != ".nc":
-            raise InputError(f"the output {out} should end in .nc: a {what} is written as NetCDF")
-        if not out.parent.is_dir():
-            raise InputError(f"no folder {out.parent} to write {out.name} in; make it first")
-        self.path = out.with_name(out.name + ".part")
-        self.found = self.path.exists()
-        label = self.path / f"{what}.json"
-        if not self.found:
-            try:
-                self.path.mkdir()
-            except OSError as fault:
-                raise InputError(f"cannot make {self.path}: {fault.strerror}; choose another output") from None
-            self._lock = locked(self.path, what)
-            text = json.dumps({"fingerprint": fingerprint, "version": __version__})
-            write_text(label, text)
-            return
-        self._lock = locked(self.path, what)
-        try:
-            known = dict(json.loads(label.read_text(encoding="utf-8")))
-        except (OSError, ValueError, TypeError):
-            known = {}
-        if known.get("fingerprint") != fingerprint:
-            self.close()
-            made_by = known.get("version", __version__)
-            if made_by != __version__:
-                raise InputError(
-                    f"{self.path} was begun by Faying {made_by}, and this is {__version__}, whose numbers may differ: "
-                    f"finish the {what} with {made_by}, or remove the folder and begin anew"
-                )
-            raise InputError(
-                f"{self.path} is what another {what} has left, or another version of this study; remove it, "
-                "or choose another output with --out"
-            )
-
-    def close(self) -> None:
-        """Let other processes have the folder."""
-        self._lock.close()
-
-    def remove(self) -> None:
-        """Remove it: the work is done, or has kept nothing."""
-        self.close()
-        shutil.rmtree(self.path, ignore_errors=True)
-
-
-class PartFile:
-    """What long work keeps in OUT.part; without an output nothing is kept.
-
-    It is a context: at the end it lets go of the folder, and removes it where Faying has refused the work before
-    anything was kept, so that it bars no other.
-
-    Args:
-        out: The output, ending in .nc, or None.
-        fingerprint: What tells this work from another, from `fingerprint`.
-        what: The name of such work in messages.
-    """
-
     def __init__(self, out: Path | None, fingerprint: str = "", *, what: str) -> None:
-        self._part = None if out is None else PartFolder(out, fingerprint, what=what)
-        self.folder = None if self._part is None else self._part.path
+        self.folder: Path | None = None
+        self._lock: IO[str] | None = None
+        if out is not None:
+            self.folder, self._lock = _opened(out, fingerprint, what)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: object, fault: BaseException | None, trace: object) -> None:
-        if self._part is None:
-            return
-        if isinstance(fault, FayingError) and not any(self._part.path.rglob("*.npz")):
-            self._part.remove()
-        self._part.close()
+        if self.folder is not None and isinstance(fault, FayingError) and not any(self.folder.rglob("*.npz")):
+            self.finish()
+        if self._lock is not None:
+            self._lock.close()
 
     def arrays(self, name: str) -> dict[str, Any] | None:
         """The arrays of NAME.npz in the folder; None where they are missing or damaged, or nothing is kept."""
@@ -106,9 +53,46 @@ class PartFile:
             write_arrays(self.folder / f"{name}.npz", arrays)
 
     def finish(self) -> None:
-        """Remove the folder: the work is done."""
-        if self._part is not None:
-            self._part.remove()
+        """Remove the folder: the work is done, or has kept nothing."""
+        if self.folder is not None and self._lock is not None:
+            self._lock.close()
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def _opened(out: Path, fingerprint: str, what: str) -> tuple[Path, IO[str]]:
+    """The folder of an output, made or found, and its lock."""
+    if out.suffix != ".nc":
+        raise InputError(f"the output {out} should end in .nc: a {what} is written as NetCDF")
+    if not out.parent.is_dir():
+        raise InputError(f"no folder {out.parent} to write {out.name} in; make it first")
+    folder = out.with_name(out.name + ".part")
+    label = folder / f"{what}.json"
+    if not folder.exists():
+        try:
+            folder.mkdir()
+        except OSError as fault:
+            raise InputError(f"cannot make {folder}: {fault.strerror}; choose another output") from None
+        lock = locked(folder, what)
+        write_text(label, json.dumps({"fingerprint": fingerprint, "version": __version__}))
+        return folder, lock
+    lock = locked(folder, what)
+    try:
+        known = dict(json.loads(label.read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError):
+        known = {}
+    if known.get("fingerprint") == fingerprint:
+        return folder, lock
+    lock.close()
+    made_by = known.get("version", __version__)
+    if made_by != __version__:
+        raise InputError(
+            f"{folder} was begun by Faying {made_by}, and this is {__version__}, whose numbers may differ: "
+            f"finish the {what} with {made_by}, or remove the folder and begin anew"
+        )
+    raise InputError(
+        f"{folder} is what another {what} has left, or another version of this study; remove it, "
+        "or choose another output with --out"
+    )
 
 
 def fingerprint(study: Study, *facts: object) -> str:

@@ -200,20 +200,20 @@ class Study(Summary):
         alternatives = tuple(AlternativeChoice.of(t, i) for i, t in enumerate(top.tables("alternative")))
         backbone = top.inner("backbone", BackboneChoice.of)
         _note_lacking(faults, joints, law, surface)
-        _note_lacking_alternatives(
-            faults, joints, (law, surface), alternatives, () if backbone is None else backbone.laws
-        )
+        _note_lacking_alternatives(faults, joints, (law, surface), alternatives, backbone)
         bolts, forces = _bolts(top, materials)
         cases = read_loads(top.tables("load"))
-        named = [bolt.name for bolt in bolts], [load.name for load in cases]
-        sheets = read_bolt_sheets(top.tables("bolt_sheet"), *named)
-        attached = _attached(top, materials)
+        names = [bolt.name for bolt in bolts]
+        sheets = read_bolt_sheets(top.tables("bolt_sheet"), names, [load.name for load in cases])
+        supports, masses = top.every("support", read_support), top.every("mass", read_mass)
+        dowels = read_dowels(top.tables("dowel"), materials)
         modes = top.inner("modes", read_modes) or ModesChoice()
-        order = top.inner("tightening", lambda table: read_order(table, [bolt.name for bolt in bolts]))
+        order = top.inner("tightening", lambda table: read_order(table, names))
         response = top.inner("response", ResponseChoice.of)
         test, hammer = read_test(top, max(forces, key=len, default=()))
         geometry = _with_selectors(geometry, faults)
-        known = Known.of(joints, bolts, forces, materials, parts)
+        loads = max(map(len, forces), default=1)
+        known = Known(joints=joints, bolts=names, loads=loads, materials=materials, parts=parts)
         scattered = top.inner("uncertain", lambda table: table.data)
         uncertain = read_uncertain(scattered, inside, known, faults)
         top.close()
@@ -239,7 +239,9 @@ class Study(Summary):
             uncertain=uncertain,
             bolt_sheets=sheets,
             load_cases=cases,
-            **attached,
+            dowels=dowels,
+            supports=supports,
+            masses=masses,
             text=text,
             data=written,
             files=tuple(dict.fromkeys(faults.files)),
@@ -258,17 +260,6 @@ def _bolts(
     return tuple(bolt for bolt, _ in read if bolt is not None), tuple(forces for _, forces in read if forces)
 
 
-def _attached(top: Table, materials: dict[str, Material]) -> dict[str, Any]:
-    """Read [[dowel]], [[support]] and [[mass]]."""
-    supports = [read_support(t) for t in top.tables("support")]
-    masses = [read_mass(t) for t in top.tables("mass")]
-    return {
-        "dowels": read_dowels(top.tables("dowel"), materials),
-        "supports": tuple(one for one in supports if one is not None),
-        "masses": tuple(one for one in masses if one is not None),
-    }
-
-
 def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
     """The geometry with the selectors that stand in joints, bolts, dowels, supports and masses."""
     both = [name for name in faults.selectors if name in geometry.face]
@@ -282,13 +273,13 @@ def _note_lacking_alternatives(
     joints: tuple[JointChoice, ...],
     shared: tuple[LawChoice, SurfaceChoice | None],
     alternatives: tuple[AlternativeChoice, ...],
-    laws: tuple[LawChoice, ...],
+    backbone: BackboneChoice | None,
 ) -> None:
     """Note what the laws of [[alternative]] and [backbone] do not find in the surfaces."""
     changes = [
         (f"alternative[{number}]: ", other.law, other.surface) for number, other in enumerate(alternatives, start=1)
     ]
-    changes += [("backbone.law: ", law, None) for law in laws]
+    changes += [("backbone.law: ", law, None) for law in (() if backbone is None else backbone.laws)]
     for where, law, surface in changes:
         changed = tuple(replace(j, law=law or j.law, surface=surface or j.surface) for j in joints)
         _note_lacking(faults, changed, *shared, where)

@@ -139,6 +139,10 @@ class Table:
             return []
         return [Table(one, f"{self._name(key)}[{i + 1}]", self.faults, declared.keys) for i, one in enumerate(items)]
 
+    def every(self, key: str, read: "Callable[[Table], Made | None]") -> tuple[Made, ...]:
+        """Take a list of tables as `read` reads each; those that their faults leave nothing of are left out."""
+        return tuple(made for made in map(read, self.tables(key)) if made is not None)
+
     def known(self, key: str) -> bool:
         """Whether this key has been asked for."""
         return key in self._known

@@ -33,7 +33,7 @@ def read_bolt(
 ) -> tuple[Bolt | SolidBolt | None, tuple[float, ...]]:
     """Read one [[bolt]] and its forces [N] at each preload; no bolt where its faults leave none."""
     name = table.get("name", f"bolt {index + 1}")
-    faces = face_names(table, "faces", name)
+    faces = face_names(table, name)
     at = table.get("at")
     part = table.get("part")
     diameter = table.get("diameter")
@@ -47,10 +47,8 @@ def read_bolt(
         bolt = SolidBolt(name=name, part=part, faces=faces, at=at, fastener=fastener)
     else:
         material = named_material(table, materials, f"bolt {name!r}")
-        washers = tuple(_washer(t, name, materials) for t in table.tables("washer"))
-        given: dict[str, Any] = {
-            key: table.get(key) for key in ("seat", "head_mass", "nut_mass", "engaged", "shank", "head")
-        }
+        washers = table.every("washer", lambda one: _washer(one, name, materials))
+        given = {key: table.get(key) for key in ("seat", "head_mass", "nut_mass", "engaged", "shank", "head")}
         if diameter is None and "material" in table.data:
             table.faults.add(
                 f"bolt {name!r} has a material but no diameter; give both, or neither for a bolt without stiffness"
@@ -63,7 +61,7 @@ def read_bolt(
                     at=at,
                     diameter=None if material is None else diameter,  # it may be given for a torque alone
                     material=material,
-                    washers=tuple(w for w in washers if w is not None),
+                    washers=washers,
                     fastener=fastener,
                     thread=thread,
                     friction=None if None in friction else friction,

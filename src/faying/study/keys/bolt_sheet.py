@@ -109,22 +109,6 @@ def _names(value: Any, name: str) -> tuple[str, ...]:
     return tuple(items)
 
 
-def _between(low: float, high: float) -> Any:
-    def convert(value: Any, name: str) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-            raise InputError(f"{name} = {value!r} should be a number from {low:g} to {high:g}")
-        return float(value)
-
-    return convert
-
-
-def _not_negative(value: Any, name: str) -> float:
-    force = float(quantity(value, "N", name, positive=False))
-    if force < 0:
-        raise InputError(f'{name} = "{value}" should be 0 or more')
-    return force
-
-
 def _axial(value: Any, name: str) -> tuple[float, float]:
     items = value if isinstance(value, list) else ["0 N", value]
     if len(items) != 2:
@@ -137,8 +121,26 @@ def _axial(value: Any, name: str) -> tuple[float, float]:
 
 def _number(low: float, high: float, says: str, default: float | None = None) -> Key:
     """A number from the lower to the higher."""
-    schema = {"type": "number", "minimum": low, "maximum": high}
-    return Key(f"a number from {low:g} to {high:g}", schema, says, default, read=_between(low, high))
+    form = f"a number from {low:g} to {high:g}"
+
+    def read(value: Any, name: str) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+            raise InputError(f"{name} = {value!r} should be {form}")
+        return float(value)
+
+    return Key(form, {"type": "number", "minimum": low, "maximum": high}, says, default, read=read)
+
+
+def _force(says: str) -> Key:
+    """A force that is not negative."""
+
+    def read(value: Any, name: str) -> float:
+        force = float(quantity(value, "N", name, positive=False))
+        if force < 0:
+            raise InputError(f'{name} = "{value}" should be 0 or more')
+        return force
+
+    return Key("quantity [N], 0 or more", QUANTITY, says, read=read, unit="N")
 
 
 BOLT_SHEET: Declared = {
@@ -180,20 +182,8 @@ BOLT_SHEET: Declared = {
         unit="N",
     ),
     "introduction": _number(0.0, 1.0, "Load introduction factor n, from 0 to 1; 1 is a load at the seats.", 1.0),
-    "transverse": Key(
-        "quantity [N], 0 or more",
-        QUANTITY,
-        "Working load across the bolt, which friction carries.",
-        read=_not_negative,
-        unit="N",
-    ),
-    "clamp": Key(
-        "quantity [N], 0 or more",
-        QUANTITY,
-        "Clamp load that is asked for, of a seal for example.",
-        read=_not_negative,
-        unit="N",
-    ),
+    "transverse": _force("Working load across the bolt, which friction carries."),
+    "clamp": _force("Clamp load that is asked for, of a seal for example."),
     "embedding": Key.quantity(
         "m",
         (

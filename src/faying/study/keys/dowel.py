@@ -27,7 +27,7 @@ def read_dowels(tables: list[Table], materials: Mapping[str, Material]) -> tuple
 def _dowel(table: Table, index: int, materials: Mapping[str, Material]) -> Dowel | None:
     """Read one [[dowel]]; None where its faults leave none."""
     name = table.get("name", f"dowel {index + 1}")
-    walls = several_names(table, "walls", name)
+    walls = several_names(table, name)
     diameter, ends = table.get("diameter"), table.get("ends")
     material = named_material(table, materials, f"dowel {name!r}")
     table.close()

@@ -12,6 +12,8 @@ from faying.study.declaration.declared import REQUIRED, WHOLE, WORDS, Declared, 
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import direction, text, whole_number
 
+TWO = '["upper.joint", "lower.joint"], or of selectors such as {part = "upper", touching = "lower"}'
+SEVERAL = '["cover.pin", "frame.pin"], or of selectors such as {part = "cover", number = 7}'
 FORM = '"upper.joint", or {part = "upper", normal = "+z"}'
 
 
@@ -37,62 +39,49 @@ def read_selector(table: Table) -> Selector | None:
     return Selector(part=part, **given | {"within": given["within"] or WITHIN})
 
 
-def face_name(table: Table, key: str, label: str) -> str | None:
+def face_name(table: Table, label: str) -> str | None:
     """Take a face: its name, or a selector, whose face gets the name `label`."""
-    value = table.data.get(key)
-    if isinstance(value, Mapping):
-        selector = table.take(key, lambda one, where: read_selector(Table(one, where, table.faults, SELECTOR)), None)
-        if selector is not None:
-            table.faults.selectors[label] = selector
-        return label
-    name: str | None = table.take(key, text)
+
+    def named(value: Any, where: str) -> str:
+        return _name(table, value, where, label) if isinstance(value, Mapping) else text(value, where)
+
+    name: str | None = table.take("face", named)
     return name
 
 
-def face_names(table: Table, key: str, label: str) -> tuple[str, str]:
+def face_names(table: Table, label: str) -> tuple[str, str]:
     """Take two faces, by name or by selector; the face of a selector gets the name `label` with its place behind it."""
-
-    def named(value: Any, where: str) -> tuple[str, str]:
-        if not isinstance(value, list) or len(value) != 2 or not all(isinstance(v, str | Mapping) for v in value):
-            raise InputError(
-                f"{where} = {value!r} should be a list of 2 names, for example "
-                f'["upper.joint", "lower.joint"], or of selectors such as {{part = "upper", touching = "lower"}}'
-            )
-        first, second = _each_named(table, value, where, label)
-        return first, second
-
-    found: tuple[str, str] | None = table.take(key, named)
-    return found or ("", "")
+    found = _names(table, "faces", label, f"2 names, for example {TWO}", most=2)
+    return (found[0], found[1]) if found else ("", "")
 
 
-def several_names(table: Table, key: str, label: str) -> tuple[str, ...]:
-    """Take two faces or more, as `face_names` does; none where there is a fault."""
+def several_names(table: Table, label: str) -> tuple[str, ...]:
+    """Take two walls or more, as `face_names` does; none where there is a fault."""
+    return _names(table, "walls", label, f"2 names or more, for example {SEVERAL}")
+
+
+def _names(table: Table, key: str, label: str, form: str, most: int | None = None) -> tuple[str, ...]:
+    """Take a list of faces, two or more, as `face_names` does; none where there is a fault."""
 
     def named(value: Any, where: str) -> tuple[str, ...]:
-        if not isinstance(value, list) or len(value) < 2 or not all(isinstance(v, str | Mapping) for v in value):
-            raise InputError(
-                f"{where} = {value!r} should be a list of 2 names or more, for example "
-                f'["cover.pin", "frame.pin"], or of selectors such as {{part = "cover", number = 7}}'
-            )
-        return _each_named(table, value, where, label)
+        fits = isinstance(value, list) and 2 <= len(value) <= (most or len(value))
+        if not fits or not all(isinstance(one, str | Mapping) for one in value):
+            raise InputError(f"{where} = {value!r} should be a list of {form}")
+        return tuple(
+            _name(table, one, f"{where}[{place + 1}]", place_name(label, place)) for place, one in enumerate(value)
+        )
 
-    found: tuple[str, ...] | None = table.take(key, named)
-    return found or ()
+    return table.take(key, named) or ()
 
 
-def _each_named(table: Table, value: list[str | Mapping[str, Any]], where: str, label: str) -> tuple[str, ...]:
-    """The name of each face of a list; the face of a selector gets the name `label` with its place behind it."""
-    names = []
-    for place, one in enumerate(value):
-        if isinstance(one, str):
-            names.append(one)
-            continue
-        name = place_name(label, place)
-        selector = read_selector(Table(one, f"{where}[{place + 1}]", table.faults, SELECTOR))
-        if selector is not None:
-            table.faults.selectors[name] = selector
-        names.append(name)
-    return tuple(names)
+def _name(table: Table, value: str | Mapping[str, Any], where: str, label: str) -> str:
+    """The name of a face; that of a selector is `label`."""
+    if isinstance(value, str):
+        return value
+    selector = read_selector(Table(value, where, table.faults, SELECTOR))
+    if selector is not None:
+        table.faults.selectors[label] = selector
+    return label
 
 
 def place_name(label: str, place: int) -> str:
@@ -154,20 +143,9 @@ def one_face(says: str, default: Any = None) -> Key:
 
 def two_faces(says: str) -> Key:
     """Two faces, each by its name or by a selector; `face_names` reads them."""
-    return Key(
-        'a list of 2 names, for example ["upper.joint", "lower.joint"], or of selectors such as '
-        '{part = "upper", touching = "lower"}',
-        listed(FACE, 2, 2),
-        says,
-        REQUIRED,
-    )
+    return Key(f"a list of 2 names, for example {TWO}", listed(FACE, 2, 2), says, REQUIRED)
 
 
 def several_faces(says: str, default: Any = None) -> Key:
     """Two faces or more, each by its name or by a selector; `several_names` reads them."""
-    return Key(
-        'a list of names, for example ["cover.pin", "frame.pin"], or of selectors such as {part = "cover", number = 7}',
-        listed(FACE, 2),
-        says,
-        default,
-    )
+    return Key(f"a list of names, for example {SEVERAL}", listed(FACE, 2), says, default)

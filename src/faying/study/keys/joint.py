@@ -67,11 +67,8 @@ class JointChoice:
             )
         choice = cls(
             name=name,
-            faces=face_names(table, "faces", name),
-            springs=table.get("springs"),
-            tangential=table.get("tangential"),
-            friction=table.get("friction"),
-            search_distance=table.get("search_distance"),
+            faces=face_names(table, name),
+            **{key: table.get(key) for key in ("springs", "tangential", "friction", "search_distance")},
             surface=None if surface is None else SurfaceChoice.of(surface),
             law=None if law is None else LawChoice.of(law),
             form=table.inner("form", read_form),

@@ -46,10 +46,7 @@ def _read(table: Table) -> Load | None:
     pressures = _on_faces(table, "pressure", Pressure)
     moves = _on_faces(table, "displacement", Displacement)
     acceleration = table.get("acceleration") or NOTHING
-    heat = table.get("temperature")
-    combine = table.get("combine")
-    after = table.get("after")
-    increments = table.get("increments")
+    more = {key: table.get(key) for key in ("temperature", "combine", "after", "increments")}
     table.close()
     if name is None or None in forces or None in pressures or None in moves:
         return None
@@ -59,17 +56,14 @@ def _read(table: Table) -> Load | None:
             forces=[one for one in forces if one is not None],
             pressures=[one for one in pressures if one is not None],
             acceleration=acceleration,
-            temperature=heat,
             displacements=[one for one in moves if one is not None],
-            combine=combine,
-            after=after,
-            increments=increments,
+            **more,
         )
     )
 
 
 def _force(table: Table, label: str) -> Force | None:
-    face = face_name(table, "face", label)
+    face = face_name(table, label)
     force = table.get("force") or NOTHING
     moment = table.get("moment") or NOTHING
     place = table.get("point")
@@ -81,7 +75,7 @@ def _on_faces(table: Table, key: str, make: Callable[[str, Any], Made]) -> list[
     """What `make` makes of the face and the value of each table of a key; None where a fault leaves one of them out."""
     out: list[Made | None] = []
     for k, one in enumerate(table.tables(key), 1):
-        face, value = face_name(one, "face", f"{table.where} {key} {k}"), one.get(key)
+        face, value = face_name(one, f"{table.where} {key} {k}"), one.get(key)
         one.close()
         out.append(None if face is None or value is None else make(face, value))
     return out

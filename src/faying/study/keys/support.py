@@ -11,24 +11,18 @@ from faying.study.keys.face import face_name, one_face
 
 def read_support(table: Table) -> Support | None:
     """Read one [[support]]; None where its faults leave none."""
-
-    face, directions = face_name(table, "face", table.where), table.get("directions")
-    stiffness = table.get("stiffness")
+    face = face_name(table, table.where)
+    given = {key: table.get(key) for key in ("directions", "stiffness")}
     table.close()
-    if face is None:
-        return None
-    return table.made(lambda: Support(face=face, directions=directions, stiffness=stiffness))
+    return None if face is None else table.made(lambda: Support(face=face, **given))
 
 
 def read_mass(table: Table) -> PointMass | None:
     """Read one [[mass]]; None where its faults leave none."""
-    mass, face = table.get("mass"), face_name(table, "face", table.where)
-    place = table.get("point")
-    offset = table.get("offset")
+    mass, face = table.get("mass"), face_name(table, table.where)
+    given = {key: table.get(key) for key in ("point", "offset")}
     table.close()
-    if mass is None:
-        return None
-    return table.made(lambda: PointMass(mass=mass, face=face, point=place, offset=offset))
+    return None if mass is None else table.made(lambda: PointMass(mass=mass, face=face, **given))
 
 
 def _axes(value: Any, name: str) -> tuple[str, ...]:

@@ -93,10 +93,16 @@ def _counter(table: Table) -> str:
     return str(table.existing("counter"))
 
 
-def _lengths(value: Any, name: str) -> tuple[float, float] | float:
-    if not isinstance(value, str):
-        raise InputError(f'{name} = {value!r} should be text, for example "4 mm x 3 mm"')
-    return units.lengths(value, name=name)
+def _lengths(says: str) -> Key:
+    """One length or two, x and y, in one text."""
+    form = 'text, for example "4 mm x 3 mm"'
+
+    def read(value: Any, name: str) -> tuple[float, float] | float:
+        if not isinstance(value, str):
+            raise InputError(f"{name} = {value!r} should be {form}")
+        return units.lengths(value, name=name)
+
+    return Key(form, QUANTITY, says, read=read, unit="m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,21 +192,12 @@ class Surface:
 
 NO_SURFACE = Surface(faces=None, origin="none: the contact law brings its own heights")
 
-LENGTHS = 'text, for example "4 mm x 3 mm"'
 SURFACE: Declared = {
     "scan": Key.file("Scan of one face: X3P, text, or an instrument's format."),
     "xy_unit": Key.length_unit("Unit of x and y, where the file states none."),
     "z_unit": Key.length_unit("Unit of the heights, where the file states none."),
-    "size": Key(
-        LENGTHS, QUANTITY, "Size of the scan, where the file states neither size nor spacing.", read=_lengths, unit="m"
-    ),
-    "spacing": Key(
-        LENGTHS,
-        QUANTITY,
-        "Spacing of the points, where the file states neither size nor spacing.",
-        read=_lengths,
-        unit="m",
-    ),
+    "size": _lengths("Size of the scan, where the file states neither size nor spacing."),
+    "spacing": _lengths("Spacing of the points, where the file states neither size nor spacing."),
     "method": Key.text("Estimator of D and G.", "psd", examples=lambda: METHODS),
     "D": Key.number("Fractal dimension of both faces together, between 2 and 3."),
     "G": Key.quantity("m", "Fractal roughness of both faces together, in the convention of Yan and Komvopoulos."),

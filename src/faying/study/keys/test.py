@@ -1,6 +1,5 @@
 """The hammer test of a study: a list of frequencies, or a file of modes or FRFs."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
@@ -150,10 +149,7 @@ def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:
         frame=table.get("frame"),
         length_unit=table.get("length_unit"),
         direction=table.take("direction", _axis, None),
-        quantity=table.get("quantity"),
-        tolerance=table.get("tolerance"),
-        least_mac=table.get("least_mac"),
-        greatest_shift=table.get("greatest_shift"),
+        **{key: table.get(key) for key in ("quantity", "tolerance", "least_mac", "greatest_shift")},
     )
 
 
@@ -167,16 +163,16 @@ def _axis(value: Any, name: str) -> str:
     return text(value, name, ("x", "y", "z"))
 
 
-def _above_zero(most: float) -> Callable[[Any, str], float]:
+def _above_zero(says: str, default: float, most: float = inf) -> Key:
     """A plain number above 0, up to a greatest."""
+    form = f"a plain number above 0{f' and at most {most:g}' if most < inf else ''}, for example 0.3"
 
     def read(value: Any, name: str) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= most:
-            end = f" and at most {most:g}" if most < inf else ""
-            raise InputError(f"{name} = {value!r} should be a plain number above 0{end}, for example 0.3")
+            raise InputError(f"{name} = {value!r} should be {form}")
         return float(value)
 
-    return read
+    return Key(form, {"type": "number"}, says, default, read=read)
 
 
 FREQUENCIES = "one list of frequencies for each preload"
@@ -217,18 +213,6 @@ TEST: Declared = {
     "length_unit": Key.text("Unit of the positions, where the file states none."),
     "quantity": Key.text("What the FRFs are, where the file does not say.", None, QUANTITIES),
     "tolerance": Key.quantity("m", "Largest distance between a point of the test and the outline."),
-    "least_mac": Key(
-        "a plain number above 0 and at most 1, for example 0.3",
-        {"type": "number"},
-        "Least MAC of a pair of modes.",
-        0.5,
-        read=_above_zero(1.0),
-    ),
-    "greatest_shift": Key(
-        "a plain number above 0, for example 0.3",
-        {"type": "number"},
-        "Greatest relative difference of frequency in a pair.",
-        0.3,
-        read=_above_zero(inf),
-    ),
+    "least_mac": _above_zero("Least MAC of a pair of modes.", 0.5, most=1.0),
+    "greatest_shift": _above_zero("Greatest relative difference of frequency in a pair.", 0.3),
 }

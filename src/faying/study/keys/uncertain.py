@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from faying import units
-from faying.bolt.bolt import Bolt
-from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.tightening import tightening
 from faying.contact.build import find
 from faying.contact.parameter import Parameter
@@ -86,26 +84,16 @@ class UncertainChoice:
 
 @dataclass(frozen=True, kw_only=True)
 class Known:
-    """What the keys of [uncertain] may name: the joints, names of bolts, materials, and the material of each part."""
+    """What the keys of [uncertain] may name: the joints, names of bolts, materials, and the material of each part;
+
+    loads: how many preloads there are.
+    """
 
     joints: Sequence[JointChoice]
     bolts: Sequence[str]
     loads: int
     materials: Mapping[str, Material]
     parts: Mapping[str, str]
-
-    @classmethod
-    def of(
-        cls,
-        joints: Sequence[JointChoice],
-        bolts: Sequence[Bolt | SolidBolt],
-        forces: Sequence[Sequence[float]],
-        materials: Mapping[str, Material],
-        parts: Mapping[str, str],
-    ) -> "Known":
-        """Of a study; forces [N]: of each bolt at each preload."""
-        names, loads = [bolt.name for bolt in bolts], max(map(len, forces), default=1)
-        return cls(joints=joints, bolts=names, loads=loads, materials=materials, parts=parts)
 
 
 def lifted(data: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
