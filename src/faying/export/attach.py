@@ -132,6 +132,9 @@ def attach(
             "the meshes of the faces do not match: springs per area, exact, between all nodes that share an overlap; "
             "some of them are negative"
         )
+    viscous = None if frequency is None else np.asarray(pairs.loss / (2 * np.pi * frequency))
+    if damping == "paper":
+        viscous = _paper_dampers(pairs, mesh, materials)
     area = pairs.area if pairs.lumped else interface.weights
     flags = _flags(law, used, area)
     system = UnitSystem(unit, force_unit)
@@ -145,7 +148,7 @@ def attach(
         faces=faces,
         system=system,
         facts=(head, *_facts(law, pairs, interface, system, f"pressure: {origin}; {of_pressure}"), *(flags or [VALID])),
-        viscous=_dampers(pairs, mesh, materials, frequency, paper=damping == "paper"),
+        viscous=viscous,
         paper=damping == "paper",
         frequency=frequency,
         first_element=_first_free(file),
@@ -301,15 +304,6 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
     if not np.any(pressure > 0):
         out.append("validity: the joint carries no pressure, so it has no stiffness")
     return out
-
-
-def _dampers(
-    pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Material], frequency: float | None, *, paper: bool
-) -> Array | None:
-    """Viscous dampers [N s/m]: the JK paper's, those that lose as much at a frequency [Hz], or none."""
-    if paper:
-        return _paper_dampers(pairs, mesh, materials)
-    return None if frequency is None else np.asarray(pairs.loss / (2 * np.pi * frequency))
 
 
 def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Material]) -> Array:

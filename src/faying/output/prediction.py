@@ -129,16 +129,14 @@ def text(found: Prediction) -> str:
         "\nwhat scatters\n" + _wrapped(scatter(found)),
         "\nfrequencies, 5 % .. median .. 95 %\n" + aligned(intervals(found)),
     ]
-    if lines := losses(found):
-        parts.append("\nloss factors, 5 % .. median .. 95 %\n" + aligned(lines))
-    if lines := slopes(found):
-        parts.append("\nchange with preload, 5 % .. median .. 95 %\n" + aligned(lines))
-    if lines := backbones(found):
-        head = textwrap.fill(f"backbones, 5 % .. median .. 95 %: {observed_at(found)}", WIDTH)
-        parts.append(f"\n{head}\n" + aligned(lines))
-    if lines := beside_test(found):
-        head = textwrap.fill(f"compared with the test ({found.test_source}): {inside} of {count} inside", WIDTH)
-        parts.append(f"\n{head}\n" + aligned(lines))
+    for head, lines in (
+        ("loss factors, 5 % .. median .. 95 %", losses(found)),
+        ("change with preload, 5 % .. median .. 95 %", slopes(found)),
+        (f"backbones, 5 % .. median .. 95 %: {observed_at(found)}", backbones(found)),
+        (f"compared with the test ({found.test_source}): {inside} of {count} inside", beside_test(found)),
+    ):
+        if lines:
+            parts.append(f"\n{textwrap.fill(head, WIDTH)}\n" + aligned(lines))
     last = load_text(found.loads[-1])
     parts.append(f"\nwhat makes the scatter at {last}\n" + _wrapped(rows) + "\n\n" + textwrap.fill(words, WIDTH) + "\n")
     return "\n".join([*parts, *(textwrap.fill(f"note: {note.text}", WIDTH) for note in found.notes)])
