@@ -11,6 +11,7 @@ import faying
 from faying.answer.run import run
 from faying.cli.main import cli
 from faying.export.condense import condense
+from faying.output.terminal import text as shown
 from faying.study import Study
 from tests.helpers.studies import write
 
@@ -61,6 +62,18 @@ def test_the_reach_ends_before_the_first_mode_that_is_wrong(found, errors, reach
     frequencies = np.array([100.0, 200.0, 300.0])
     made = replace(found, frequencies=frequencies, mean=frequencies * (1 + np.array(errors)))
     assert made.reach == reach
+
+
+def test_the_table_has_loss_only_where_the_law_predicts_it(found):
+    """A law without loss gives a table that a terminal can show, without the two columns of loss."""
+    with_loss, without = found.rows(), replace(found, lossless=True).rows()
+    assert [row[:6] for row in with_loss] == without
+    assert with_loss[0][6:] == ["loss", "mean ties"]
+    assert "full [Hz]" in shown(without).splitlines()[0]
+    for mode, row in enumerate(without[1:]):
+        assert row[1] == f"{found.frequencies[mode]:.2f}"
+        error = found.mean[mode] / found.frequencies[mode] - 1
+        assert row[3] == ("-" if np.isnan(error) else f"{100 * error:+.3f}")
 
 
 def test_the_command_writes_a_deck(file, tmp_path, capsys):

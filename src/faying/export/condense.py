@@ -19,6 +19,7 @@ from faying.measured.mac import mac, partners
 from faying.progress import Report
 from faying.result.fields import listed
 from faying.study.study import Study
+from faying.text import in_columns
 from faying.typing import Array
 from faying.units import load_text
 
@@ -91,18 +92,18 @@ class Condensed:
         )
 
     def rows(self) -> list[list[str]]:
-        """One row per mode: the full model, and both ties with their errors."""
-        out = [
-            ["mode", "full [Hz]", "mean ties [Hz]", "error [%]", "rigid ties [Hz]", "error [%]", "loss", "mean ties"]
-        ]
-        for j, f in enumerate(self.frequencies):
-            cells = [str(j + 1), f"{f:.2f}"]
-            for value in (self.mean[j], self.rigid[j]):
-                cells += ["-", "-"] if np.isnan(value) else [f"{value:.2f}", f"{100 * (value / f - 1):+.3f}"]
-            if not self.lossless:
-                cells += [f"{self.loss[j]:.2e}", "-" if np.isnan(self.mean_loss[j]) else f"{self.mean_loss[j]:.2e}"]
-            out.append(cells)
-        return out
+        """One row per mode: the full model, and both ties with their errors; loss where the law predicts one."""
+        f = self.frequencies
+        loss = (("loss", self.loss, ".2e"), ("mean ties", self.mean_loss, ".2e"))
+        return in_columns(
+            ("mode", range(1, len(f) + 1), ""),
+            ("full [Hz]", f, ".2f"),
+            ("mean ties [Hz]", self.mean, ".2f"),
+            ("error [%]", 100 * (self.mean / f - 1), "+.3f"),
+            ("rigid ties [Hz]", self.rigid, ".2f"),
+            ("error [%]", 100 * (self.rigid / f - 1), "+.3f"),
+            *(() if self.lossless else loss),
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Everything in SI units, for JSON; None in place of NaN."""
