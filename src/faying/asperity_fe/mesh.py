@@ -34,6 +34,9 @@ class CapMesh:
     wall: Index
 
 
+GROWTH = 1.08  # of elements of the cap, from one to the next
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Grading:
     """Element size along a line: `fine` up to `flat`, then growing by `growth` from one element to the next."""
@@ -80,7 +83,6 @@ def cap_mesh(
     elements: float,
     domain: float | None,
     layer_thickness: float = 0.0,
-    growth: float = 1.08,
 ) -> CapMesh:
     """Mesh the cap and, unless `domain` is None, the block under it.
 
@@ -91,15 +93,15 @@ def cap_mesh(
     cap = _cap(
         R,
         h_a,
-        across=_Grading(fine=fine, flat=1.2 * contact_radius, growth=growth),
-        down=_Grading(fine=fine, flat=0.7 * contact_radius, growth=growth),
+        across=_Grading(fine=fine, flat=1.2 * contact_radius, growth=GROWTH),
+        down=_Grading(fine=fine, flat=0.7 * contact_radius, growth=GROWTH),
     )
     if domain is None:
         return cap
     return _on_block(
         cap,
-        across=_Grading(fine=fine, flat=1.2 * contact_radius, growth=1.5 * growth - 0.5),
-        down=_Grading(fine=fine, flat=0.7 * contact_radius, growth=1.5 * growth - 0.5),
+        across=_Grading(fine=fine, flat=1.2 * contact_radius, growth=1.5 * GROWTH - 0.5),
+        down=_Grading(fine=fine, flat=0.7 * contact_radius, growth=1.5 * GROWTH - 0.5),
         stops=[h_a, *([h_a + layer_thickness] if layer_thickness else []), h_a + domain],
     )
 

@@ -40,12 +40,12 @@ def stabilisation(ax: Any, found: Identified) -> Any:
 
 
 @drawing
-def frf_fit(ax: Any, found: Identified, row: int = 0) -> Any:
+def frf_fit(ax: Any, found: Identified) -> Any:
     """Draw one measured FRF and what the modes make of it, by size."""
     frf = found.frf
-    o, i = frf.measured[row]
+    o, i = frf.measured[0]
     ax.semilogy(frf.frequency, np.abs(frf.values[o, i]), color="0.45", lw=1.2, label="measured")
-    ax.semilogy(frf.frequency, np.abs(found.fit[row]), color=COLOURS[1], lw=0.9, label="modes and residuals")
+    ax.semilogy(frf.frequency, np.abs(found.fit[0]), color=COLOURS[1], lw=0.9, label="modes and residuals")
     _frf_axes(ax, frf, o, i)
     return ax
 

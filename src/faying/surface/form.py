@@ -117,12 +117,12 @@ def _pyramid(values: Array, weight: Array) -> Array:
     return np.where(weight > 0, values / np.where(weight > 0, weight, 1.0), coarse[:rows, :columns])
 
 
-def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
+def find_spikes(scan: Scan | Profile) -> Mask:
     """Mark single points that stand out from the median of their neighbours (5 points of a line, 3 x 3 of a scan).
 
-    A point is a spike where it differs from that median by more than `threshold` times the robust standard deviation
+    A point is a spike where it differs from that median by more than `SPIKE` times the robust standard deviation
     (1.4826 times the median of the absolute differences, or a quarter of the median step if more) and by more than
-    `threshold` times the mean difference in the 15 points (15 x 15) around it. Missing points are never spikes.
+    `SPIKE` times the mean difference in the 15 points (15 x 15) around it. Missing points are never spikes.
     """
     from scipy.ndimage import median_filter, uniform_filter
 
@@ -135,12 +135,12 @@ def find_spikes(scan: Scan | Profile, threshold: float = SPIKE) -> Mask:
     if positive.size == 0:
         return np.zeros(hole.shape, bool)
     scale = max(1.4826 * float(np.median(positive)), 0.25 * float(np.median(steps)))
-    candidates = (away > threshold * scale) & ~hole
+    candidates = (away > SPIKE * scale) & ~hole
     if not candidates.any():
         return np.zeros(hole.shape, bool)
     # a rough patch is not a spike: compare with the mean difference around, single large ones cut down to the threshold
-    around = uniform_filter(np.minimum(away, threshold * scale), size=15, mode="nearest")
-    return np.asarray(candidates & (away > threshold * around), bool)
+    around = uniform_filter(np.minimum(away, SPIKE * scale), size=15, mode="nearest")
+    return np.asarray(candidates & (away > SPIKE * around), bool)
 
 
 _PREPARED: WeakKeyDictionary[Scan | Profile, dict[tuple[int, bool], Prepared]] = WeakKeyDictionary()

@@ -36,8 +36,8 @@ def series_moments(
     return m0, m2, m4
 
 
-def invert_ratio(ratio: float, power: float, frequency: ArrayLike, weight: ArrayLike) -> float:
-    """Return the slope b for which sum(weight f^(power-b)) / sum(weight f^-b) = ratio; a one-dimensional root.
+def invert_ratio(ratio: float, frequency: ArrayLike, weight: ArrayLike) -> float:
+    """Return the slope b for which sum(weight f^(2-b)) / sum(weight f^-b) = ratio; a one-dimensional root.
 
     Raises InputError where no slope between 5 - 2*2.5 and 5 - 2*0.5 has this ratio.
     """
@@ -46,11 +46,11 @@ def invert_ratio(ratio: float, power: float, frequency: ArrayLike, weight: Array
     f, w = np.asarray(frequency, float), np.asarray(weight, float)
     scale = float(np.exp(np.mean(np.log(f))))
     x = np.log(f / scale)
-    target = log(ratio) - power * log(scale)
+    target = log(ratio) - 2 * log(scale)
 
     def excess(b: float) -> float:
         a = w * np.exp(-b * x)
-        return float(np.log(np.sum(a * np.exp(power * x)) / np.sum(a))) - target
+        return float(np.log(np.sum(a * np.exp(2 * x)) / np.sum(a))) - target
 
     low, high = 5 - 2 * HIGHEST_DS, 5 - 2 * LOWEST_DS
     if excess(low) < 0 or excess(high) > 0:
@@ -72,7 +72,7 @@ def from_series_moments(
     if not (m0 > 0 and m2 > 0):
         raise InputError(f"m0 = {m0}, m2 = {m2}: spectral moments are positive")
     f = series_frequencies(length, terms, gamma)
-    slope = invert_ratio(m2 / m0 / (2 * pi) ** 2, 2.0, f, f)  # A_n^2 ~ f_n f_n^-(5-2Ds)
+    slope = invert_ratio(m2 / m0 / (2 * pi) ** 2, f, f)  # A_n^2 ~ f_n f_n^-(5-2Ds)
     D = (7 - slope) / 2
     c = prefactor(convention, gamma)
     # m0 = B ln(gamma) sum f f^-slope with B = c G^(2Ds-2)/2

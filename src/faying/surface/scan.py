@@ -230,14 +230,17 @@ def sides_of(scan: Scan | Profile) -> tuple[float, ...]:
     return tuple(n * step for n, step in zip(scan.heights.shape, steps_of(scan), strict=True))
 
 
-def usable(scan: Scan | Profile, *, least: int = 16) -> None:
+FEWEST = 16  # points each way that a statistic needs
+
+
+def usable(scan: Scan | Profile) -> None:
     """Raise InputError where the heights cannot carry a statistic: too few points, all missing, or all the same."""
     heights = scan.heights
     known = heights[~np.isnan(heights)]
     if known.size == 0:
         raise InputError(f"{scan.source}: every point is missing; there is nothing to analyse")
-    if min(heights.shape) < least:
-        raise InputError(f"{scan.source}: {heights.shape} points; the analysis needs at least {least} each way")
+    if min(heights.shape) < FEWEST:
+        raise InputError(f"{scan.source}: {heights.shape} points; the analysis needs at least {FEWEST} each way")
     if known.size < heights.size / 2:
         share = 100 * (1 - known.size / heights.size)
         raise InputError(f"{scan.source}: {share:.0f} % of the points are missing; at most half may be, crop the scan")

@@ -51,9 +51,9 @@ def _edges(lowest: float, highest: float, ratio: float) -> Array:
     return np.array(edges)
 
 
-def _running_median(values: Array, reach: int = 6) -> Array:
-    """Median over up to `reach` bins on either side, not below 1."""
-    spans = [values[max(0, i - reach) : i + reach + 1] for i in range(len(values))]
+def _running_median(values: Array) -> Array:
+    """Median over up to 6 bins on either side, not below 1."""
+    spans = [values[max(0, i - 6) : i + 7] for i in range(len(values))]
     return np.array([max(1.0, float(np.median(span))) for span in spans])
 
 
@@ -66,15 +66,12 @@ def _hann(count: int) -> Array:
     return 0.5 - 0.5 * np.cos(2 * pi * (np.arange(count) + 0.5) / count)
 
 
-def spectrum(scan: Scan | Profile, *, ratio: float = 1.06, exclude: Mask | None = None) -> Spectrum:
+def spectrum(scan: Scan | Profile, *, ratio: float = 1.06) -> Spectrum:
     """Return the Hann-windowed power spectrum of levelled heights without missing points, averaged over directions.
 
-    Bins are two Fourier steps wide at least and grow by `ratio`. `exclude` is a mask over the half-plane of Fourier
-    coefficients (shape ny, nx//2+1) left out of the averages (peaks of machining marks). No user errors: the heights
-    come from `form.prepared`.
+    Bins are two Fourier steps wide at least and grow by `ratio`. No user errors: the heights come from `form.prepared`.
     """
-    power, frequency, axes = periodogram(scan)
-    return binned(scan, power, frequency, axes, ratio=ratio, exclude=exclude)
+    return binned(scan, *periodogram(scan), ratio=ratio)
 
 
 def periodogram(scan: Scan | Profile) -> tuple[Array, Array, tuple[Array, ...]]:
@@ -110,7 +107,11 @@ def binned(
     ratio: float = 1.06,
     exclude: Mask | None = None,
 ) -> Spectrum:
-    """Average a periodogram over directions and in bins of frequency; see `spectrum`."""
+    """Average a periodogram over directions and in bins of frequency; see `spectrum`.
+
+    `exclude` is a mask over the half-plane of Fourier coefficients (shape ny, nx//2+1) left out of the averages (peaks
+    of machining marks).
+    """
     sides = sides_of(scan)
     lowest, nyquist = 1 / min(sides), 0.5 / max(steps_of(scan))
     edges = _edges(lowest, nyquist, ratio)

@@ -158,22 +158,27 @@ def _forces(
     return forces or ()
 
 
-def _rising(value: Any, name: str, unit: str, example: str) -> tuple[float, ...]:
-    items = value if isinstance(value, list) else [value]
-    if not items:
-        raise InputError(f'{name} is empty; give one or more, for example "{example}"')
-    loads = [quantity(v, unit, name, positive=False) for v in items]
-    for item, load in zip(items, loads, strict=True):
-        if load <= 0:
-            raise InputError(f'{name} = "{item}": a preload pulls the joint together and must be positive')
-        quantity(item, unit, name)  # refuses what no bolt can have
-    if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
-        raise InputError(
-            f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers the "
-            f"greatest "
-            "load it has seen"
-        )
-    return tuple(loads)
+def _rising(unit: str, example: str, says: str) -> Key:
+    """One quantity that tightens a bolt, or several that rise."""
+
+    def read(value: Any, name: str) -> tuple[float, ...]:
+        written = unit.replace("*", " ")
+        items = value if isinstance(value, list) else [value]
+        if not items:
+            raise InputError(f'{name} is empty; give one or more, for example "{example}"')
+        loads = [quantity(v, written, name, positive=False) for v in items]
+        for item, load in zip(items, loads, strict=True):
+            if load <= 0:
+                raise InputError(f'{name} = "{item}": a preload pulls the joint together and must be positive')
+            quantity(item, written, name)  # refuses what no bolt can have
+        if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
+            raise InputError(
+                f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers the "
+                "greatest load it has seen"
+            )
+        return tuple(loads)
+
+    return Key(f"quantity [{unit}], or a list that rises", one_or_more(QUANTITY), says, read=read, unit=unit)
 
 
 BOLT: Declared = {
@@ -193,20 +198,8 @@ BOLT: Declared = {
     ),
     "thread_friction": Key.number("Coefficient of friction in the thread."),
     "head_friction": Key.number("Coefficient of friction under the head."),
-    "preload": Key(
-        "quantity [N], or a list that rises",
-        one_or_more(QUANTITY),
-        'One force or several that rise, for example ["6 kN", "12 kN"].',
-        read=lambda value, name: _rising(value, name, "N", "12 kN"),
-        unit="N",
-    ),
-    "torque": Key(
-        "quantity [N*m], or a list that rises",
-        one_or_more(QUANTITY),
-        "One tightening torque or several that rise, in place of preload.",
-        read=lambda value, name: _rising(value, name, "N m", "20 N m"),
-        unit="N*m",
-    ),
+    "preload": _rising("N", "12 kN", 'One force or several that rise, for example ["6 kN", "12 kN"].'),
+    "torque": _rising("N*m", "20 N m", "One tightening torque or several that rise, in place of preload."),
     "nut_factor": Key.number("K of F = T/(K d)."),
     "grade": Key.text(
         'Property class of ISO 898-1, for example "8.8"; compares the preload with the proof load.',

@@ -25,7 +25,7 @@ def estimate(ready: Prepared, limits: Limits, c: float) -> Estimate:
         m0, m2 = float(np.sum(clean * width)), float(np.sum(clean * f**2 * width))
         if m0 <= 0 or m2 <= 0:
             raise NotConverged("the spectral moments of the band are not positive once the noise is taken out")
-        slope = invert_ratio(m2 / m0, 2.0, f, width)
+        slope = invert_ratio(m2 / m0, f, width)
         return slope, log(m2) - log(float(np.sum((f / band.law.pivot) ** -slope * f**2 * width)))
 
     return through_draws(ready, band, c, solve)
