@@ -96,6 +96,7 @@ EXCEPTIONS = {
     "measured/records.py:frf_from_records": PUBLIC,
     "export/attach.py:attach": PUBLIC,
     "backbones/backbone.py:backbone": PUBLIC,
+    "surface/synthesis.py:spectral_heights": "arguments of the public function that calls it",
     "surface/synthesize.py:spectral": PUBLIC,
     "surface/synthesize.py:weierstrass_mandelbrot": PUBLIC,
 }
@@ -126,14 +127,14 @@ def test_formatting_is_never_switched_off():
 
 
 def test_no_module_imports_in_a_circle():
-    """Also within a room; imports inside functions run later and do not count."""
+    """Nor within a room, inside functions, or for type checkers alone."""
     names = {
         ".".join(("faying", *p.relative_to(SOURCE).with_suffix("").parts)).removesuffix(".__init__"): p for p in MODULES
     }
     graph = {}
     for name, path in names.items():
         found = graph[name] = set()
-        for node in ast.parse(path.read_text()).body:
+        for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.module:
                 for alias in node.names:
                     whole = f"{node.module}.{alias.name}"

@@ -14,7 +14,7 @@ import numpy as np
 import faying
 from faying.form.form import Form
 from faying.output import table
-from faying.result.result import preload_slope
+from faying.result.run_record import preload_slope
 from faying.study import Study
 from faying.study.keys.alternative import AlternativeChoice
 

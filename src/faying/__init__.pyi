@@ -74,8 +74,8 @@ from .surface.combine import Combined as Combined
 from .surface.combine import combine as combine
 from .surface.files.read import read_scan as read_scan
 from .surface.files.write import write_scan as write_scan
-from .surface.fractal import FractalFit as FractalFit
 from .surface.fractal import fit_fractal as fit_fractal
+from .surface.fractal_fit import FractalFit as FractalFit
 from .surface.roughness import Roughness as Roughness
 from .surface.scan import Profile as Profile
 from .surface.scan import Scan as Scan

@@ -13,8 +13,9 @@ from faying import CATALOGUE, ContactPair, Mates
 from faying.contact.models.half_space import HalfSpace
 from faying.errors import InputError
 from faying.halfspace import solve_half_space
+from faying.halfspace.sized import solve_with_size
 from faying.halfspace.solve import halved_map, refined_map
-from faying.halfspace.spots import Spots, solve_with_size
+from faying.halfspace.spots import Spots
 from faying.hardness import VickersHardness
 from faying.joint.joint_law import JointLaw
 from faying.setup import template

@@ -18,7 +18,8 @@ from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
 from faying.result.load_cases import LoadCases
-from faying.result.result import MeasuredComparison, Receptance, Result
+from faying.result.result import Result
+from faying.result.run_record import MeasuredComparison, Receptance
 
 pytest.importorskip("sphinx", reason="the site needs the group docs")
 

@@ -10,9 +10,10 @@ from faying.fe.elasticity import assemble, element_mass, element_stiffness, rigi
 from faying.fe.elements import KINDS, SOLIDS
 from faying.fe.faces import face_centre
 from faying.fe.interface import join
-from faying.fe.mesh import Mesh, least_jacobian
+from faying.fe.mesh import Mesh
 from faying.fe.sides import all_sides, nodes_of, skin
-from faying.joint.structure import bond
+from faying.fe.solids import least_jacobian
+from faying.joint.bolted import bond
 from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.loads import face_load

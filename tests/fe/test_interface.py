@@ -4,7 +4,7 @@ import pytest
 import faying
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
-from faying.joint.structure import bond, merged
+from faying.joint.bolted import bond, merged
 from tests.helpers.boxes import stack
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from faying.fe.mesh import least_jacobian
+from faying.fe.solids import least_jacobian
 from faying.fe.straighten import EDGES, folded, straightened
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], float)

@@ -6,7 +6,8 @@ from scipy.linalg import eigh
 
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.elements import KINDS
-from faying.fe.mesh import Mesh, least_jacobian
+from faying.fe.mesh import Mesh
+from faying.fe.solids import least_jacobian
 from faying.fe.surplus import Surplus, _higher
 from faying.materials import CATALOGUE
 from faying.numerics.modes import lowest_modes

@@ -10,7 +10,7 @@ ELEMENT = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8I", "hex20": "C3D20", 
 
 def deck(mesh, materials, springs=(), *, step):
     """Lengths in mm, stresses in MPa, tonnes: CalculiX is meant for such numbers. springs: (node, node, N/m x3)."""
-    from faying.fe.mesh import kind_of
+    from faying.fe.solids import kind_of
 
     lines = ["*NODE,NSET=NALL"]
     lines += [f"{i + 1},{x:.12e},{y:.12e},{z:.12e}" for i, (x, y, z) in enumerate(mesh.points * 1e3)]

@@ -33,9 +33,9 @@ from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
 from faying.result import Receptance, backbone_figure, difference_figure, load_cases_figure
-from faying.result.backbone import QuasiStaticCheck
+from faying.result.backbone_record import QuasiStaticCheck
 from faying.result.difference import compare_runs
-from faying.result.result import MeasuredComparison
+from faying.result.run_record import MeasuredComparison
 from faying.study.keys.uncertain import Input
 from faying.surface import figure as surface
 from faying.surface.form import prepared

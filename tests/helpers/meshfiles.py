@@ -3,7 +3,7 @@
 import numpy as np
 
 from faying.fe.elements import FACES, KINDS
-from faying.fe.mesh import kind_of
+from faying.fe.solids import kind_of
 
 NUMBER0 = 100  # node numbers do not begin at 1, nor follow one another
 ABAQUS = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8I", "hex20": "C3D20R", "wedge6": "C3D6", "wedge15": "C3D15"}

@@ -9,7 +9,7 @@ from scipy.optimize import brentq, fsolve
 import faying
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
-from faying.joint.structure import bond
+from faying.joint.bolted import bond
 from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes
 from faying.numerics.solve import available, chosen, factorise

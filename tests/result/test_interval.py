@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from faying.result.interval import Interval
-from faying.result.result import MeasuredComparison
+from faying.result.run_record import MeasuredComparison
 from faying.result.score import Score
 
 SCORE = 1.6448536

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from faying import InputError, Scan
-from faying.surface.scan import Instrument, Profile, usable
+from faying.surface.heights import Instrument, usable
+from faying.surface.scan import Profile
 
 
 def test_scan_is_frozen_and_copies_its_heights():

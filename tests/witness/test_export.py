@@ -101,7 +101,7 @@ def surfaces(mesh):
                 number += 1
                 elements[number] = cell
     from faying.fe.elements import KINDS
-    from faying.fe.mesh import kind_of
+    from faying.fe.solids import kind_of
 
     for name in FACES:
         corners = {frozenset(f[:4].tolist()) for block in mesh.face(name) for f in block}

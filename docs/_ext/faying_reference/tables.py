@@ -18,11 +18,13 @@ from faying.form.form import VARIED as FORM
 from faying.materials import CATALOGUE
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse
-from faying.result.backbone import Backbone, QuasiStaticCheck
+from faying.result.backbone import Backbone
+from faying.result.backbone_record import QuasiStaticCheck
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
 from faying.result.load_cases import LoadCases, LoadIntervals
-from faying.result.result import MeasuredComparison, Receptance, Result
+from faying.result.result import Result
+from faying.result.run_record import MeasuredComparison, Receptance
 from faying.study.keys import uncertain, varied
 from faying.surface.estimators.table import ESTIMATORS
 from faying.units import EXAMPLES

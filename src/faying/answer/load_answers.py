@@ -10,12 +10,12 @@ from faying.case.case import Case, Progress
 from faying.case.engine import Engine, engine_of
 from faying.case.provenance import provenance
 from faying.errors import InputError
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import ModalProblem, ModesChoice
 from faying.joint.shared_modes import SharedModes
 from faying.joint.springs import Springs
 from faying.joint.state import State
-from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions
 from faying.loads.acting import Acting, acting, nothing
 from faying.loads.answers import NOTHING, BoltAnswers, Regions, bolt_answers, joint_answers
@@ -54,7 +54,7 @@ class Preloaded:
     """
 
     title: str
-    structure: Structure
+    structure: BoltedStructure
     preload: PreloadState
     springs: Sequence[Springs[Any]]
     factor: Any
@@ -134,7 +134,7 @@ def of_state(state: State, modes: bool) -> Preloaded:
     )
 
 
-def near_factor(structure: Structure, springs: Sequence[Springs[Any]], solver: str | None) -> Any:
+def near_factor(structure: BoltedStructure, springs: Sequence[Springs[Any]], solver: str | None) -> Any:
     """A factorisation near the stiffness under the springs of the joints."""
     stiffness = (structure.dynamic_matrices[0] + structure.joint_stiffness(springs)).tocsr()
     shift = (2 * np.pi * structure.shift_frequency) ** 2
@@ -253,7 +253,7 @@ def _departure(motions: Sequence[Array], straight: Sequence[Array], bolts: BoltA
     return np.array(out)
 
 
-def _dowels(structure: Structure, motions: Sequence[Array]) -> dict[str, Any]:
+def _dowels(structure: BoltedStructure, motions: Sequence[Array]) -> dict[str, Any]:
     """What the dowels carry under the displacement [m] of each case; nothing where there are none."""
     fitted = structure.fitted_dowels
     if not fitted:

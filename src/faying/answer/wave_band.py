@@ -14,7 +14,7 @@ from faying.form.form import Form
 from faying.form.machining import ASSUMED, ASSUMED_GAP
 from faying.form.waviness import LaidWaves
 from faying.notes import Note, joint_names
-from faying.result.result import preload_slope
+from faying.result.run_record import preload_slope
 from faying.typing import Array
 from faying.units import show
 

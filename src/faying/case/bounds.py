@@ -6,8 +6,8 @@ import numpy as np
 
 from faying.case.above_range import stiff_as_bonded
 from faying.case.case import Case
+from faying.joint.bolted import bond, merged
 from faying.joint.shared_modes import modes_with
-from faying.joint.structure import bond, merged
 from faying.joint.support_check import RIGID_BELOW
 from faying.mpi.over_mpi import OverMpi
 from faying.notes import Note

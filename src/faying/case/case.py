@@ -10,13 +10,15 @@ from faying.case.places import named_points, on_structure
 from faying.errors import InputError
 from faying.fe.bonded import bonded_mesh
 from faying.fe.interface import Interface, join
-from faying.fe.mesh import Mesh, bodies_of
+from faying.fe.mesh import Mesh
+from faying.fe.solids import bodies_of
 from faying.files import end_of
+from faying.joint.bolted import loose_parts
 from faying.joint.joint import FittedJoint, with_form
 from faying.joint.joint_law import JointLaw
 from faying.joint.modal import ModalProblem
 from faying.joint.strength import bolt_notes, material_notes
-from faying.joint.structure import Structure, loose_parts
+from faying.joint.structure import Structure
 from faying.loads.load import Displacement, Force, Pressure
 from faying.materials import Material
 from faying.measured.mapping import PointMap

@@ -6,23 +6,10 @@ import numpy as np
 
 from faying.contact.compare import Comparison
 from faying.contact.models.half_space import HalfSpace
-from faying.contact.response import UNITS
-from faying.errors import InputError, shown
+from faying.contact.response import MEANINGS, UNITS
 
 if TYPE_CHECKING:
     import xarray
-
-MEANINGS = {
-    "area": "real area / nominal area",
-    "k_n": "normal stiffness k_n",
-    "k_t": "tangential stiffness k_t",
-    "k_load": "normal stiffness on loading k_load",
-    "k_n_low": "lower end of the range of k_n",
-    "k_n_high": "upper end of the range of k_n",
-    "loss_n": "normal loss factor",
-    "loss_t": "tangential loss factor",
-}
-STIFFNESS = 1e-12  # MPa/um
 
 
 def dataset(comparison: Comparison, *, mates: str) -> "xarray.Dataset":
@@ -52,11 +39,3 @@ def dataset(comparison: Comparison, *, mates: str) -> "xarray.Dataset":
         coords={"law": list(comparison.responses), "pressure": pressure},
         attrs={"mates": mates, "left_out": "\n".join(f"{name}: {why}" for name, why in comparison.left_out.items())},
     )
-
-
-def label_and_scale(quantity: str) -> tuple[str, float]:
-    """Text of an axis and factor from SI to what it shows. Raises InputError for an unknown quantity."""
-    if not isinstance(quantity, str) or quantity not in MEANINGS:
-        raise InputError(f"quantity = {shown(quantity)}; allowed: {', '.join(MEANINGS)}")
-    stiff = UNITS[quantity] == "Pa/m"
-    return MEANINGS[quantity] + (" [MPa/um]" if stiff else ""), STIFFNESS if stiff else 1.0

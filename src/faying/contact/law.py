@@ -11,14 +11,15 @@ from numpy.typing import ArrayLike
 
 from faying.checks import flag
 from faying.contact.inputs import FractalSurface, RoughSurface
-from faying.contact.parameter import FILE, Parameter, checked_all
+from faying.contact.law_figure import law_plot
+from faying.contact.parameter import FILE, Parameter, checked, checked_all
 from faying.contact.response import Response
 from faying.contact.table import PressureTable
 from faying.errors import FayingError, InputError, NotConverged, shown
 from faying.materials import ContactPair
 from faying.style import Summary
 from faying.typing import Array
-from faying.units import show, si
+from faying.units import show
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -34,35 +35,6 @@ def require(law: str, good: bool, text: str) -> None:
     """Raise InputError with the law's name before the text unless good."""
     if not good:
         raise InputError(f"{law}: {text}")
-
-
-def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
-    """Return values as floats, texts with units among them read; InputError where one is NaN, infinite, negative, or
-    zero unless `zero` allows it."""
-    array = _floats(values, name, unit)
-    if not np.all(np.isfinite(array)):
-        raise InputError(
-            f"{name}: {np.count_nonzero(~np.isfinite(array))} of {array.size} values are NaN or infinite; "
-            f"give finite numbers in {unit}"
-        )
-    if np.any(array < 0) or (not zero and np.any(array == 0)):
-        raise InputError(
-            f"{name}: least value {array.min():.6g} {unit}; it must be {'0 or more' if zero else 'positive'}"
-        )
-    return array
-
-
-def _floats(values: ArrayLike, name: str, unit: str) -> Array:
-    """Values as they are where they are numbers, as `units.si` reads them where one of them is text."""
-    try:
-        given = np.asarray(values)
-        if given.dtype.kind in "fiu":
-            return np.asarray(given, dtype=float)
-        given = np.asarray(values, dtype=object)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} = {shown(values)}: the rows differ in length; give numbers in {unit}") from None
-    read = [si(value, unit, name=name) for value in given.ravel()]
-    return np.asarray(read, dtype=float).reshape(given.shape)
 
 
 def _entry(name: str, value: object, parameter: Parameter) -> str:
@@ -229,8 +201,6 @@ class ContactLaw(Summary, ABC):
         Raises:
             InputError: for pressures outside what the law covers, and for another number of axes.
         """
-        from faying.contact.figure import law_plot
-
         return law_plot(self, pressure, axes)
 
     def _pressure_at(self, closure: Array) -> Array:

@@ -21,7 +21,7 @@ from faying.errors import FayingError, InputError, shown
 from faying.materials import ContactPair, Material, material_of
 from faying.style import Summary
 from faying.surface.convention import NAMES
-from faying.surface.fractal import FractalFit
+from faying.surface.fractal_fit import FractalFit
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 from faying.units import show, si
@@ -329,8 +329,8 @@ class Mates(Summary):
         Raises:
             InputError: as `compare`, and for an unknown quantity.
         """
-        from faying.contact.comparison_table import label_and_scale
         from faying.contact.figure import comparison_plot
+        from faying.contact.response import label_and_scale
         from faying.style import axes_of
 
         label_and_scale(quantity)  # faults are reported before contacts are solved

@@ -8,9 +8,12 @@ from pathlib import Path
 from typing import Literal, final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from faying import units
 from faying.errors import InputError, shown
+from faying.typing import Array
+from faying.units import si
 
 FARTHEST = 1e308  # whole numbers beyond it are not floats
 TEXT, FILE, TABLE = "text", "file", "table"  # in place of a unit: a word, the name of a file, an array
@@ -165,6 +168,35 @@ def checked_all(
         if plain is not value:
             read[name] = plain
     return read
+
+
+def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
+    """Return values as floats, texts with units among them read; InputError where one is NaN, infinite, negative, or
+    zero unless `zero` allows it."""
+    array = _floats(values, name, unit)
+    if not np.all(np.isfinite(array)):
+        raise InputError(
+            f"{name}: {np.count_nonzero(~np.isfinite(array))} of {array.size} values are NaN or infinite; "
+            f"give finite numbers in {unit}"
+        )
+    if np.any(array < 0) or (not zero and np.any(array == 0)):
+        raise InputError(
+            f"{name}: least value {array.min():.6g} {unit}; it must be {'0 or more' if zero else 'positive'}"
+        )
+    return array
+
+
+def _floats(values: ArrayLike, name: str, unit: str) -> Array:
+    """Values as they are where they are numbers, as `units.si` reads them where one of them is text."""
+    try:
+        given = np.asarray(values)
+        if given.dtype.kind in "fiu":
+            return np.asarray(given, dtype=float)
+        given = np.asarray(values, dtype=object)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} = {shown(values)}: the rows differ in length; give numbers in {unit}") from None
+    read = [si(value, unit, name=name) for value in given.ravel()]
+    return np.asarray(read, dtype=float).reshape(given.shape)
 
 
 # what the laws of fractal surfaces share

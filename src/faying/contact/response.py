@@ -26,6 +26,18 @@ UNITS = {
     "k_n_low": "Pa/m",
     "k_n_high": "Pa/m",
 }
+# what they are called in tables and on axes
+MEANINGS = {
+    "area": "real area / nominal area",
+    "k_n": "normal stiffness k_n",
+    "k_t": "tangential stiffness k_t",
+    "k_load": "normal stiffness on loading k_load",
+    "k_n_low": "lower end of the range of k_n",
+    "k_n_high": "upper end of the range of k_n",
+    "loss_n": "normal loss factor",
+    "loss_t": "tangential loss factor",
+}
+STIFFNESS = 1e-12  # MPa/um
 
 # A loop of force over motion fills at most its box, 4 F x; a spring to its corner stores F x/2.
 MAX_LOSS = 4 / pi
@@ -112,3 +124,11 @@ def _shown(value: Array, name: str) -> str:
     else:
         texts = [show(end, UNITS[name]) if UNITS[name] else f"{end:.4g}" for end in ends]
     return texts[0] if np.size(value) == 1 or texts[0] == texts[1] else " to ".join(texts)
+
+
+def label_and_scale(quantity: str) -> tuple[str, float]:
+    """Text of an axis and factor from SI to what it shows. Raises InputError for an unknown quantity."""
+    if not isinstance(quantity, str) or quantity not in MEANINGS:
+        raise InputError(f"quantity = {shown(quantity)}; allowed: {', '.join(MEANINGS)}")
+    stiff = UNITS[quantity] == "Pa/m"
+    return MEANINGS[quantity] + (" [MPa/um]" if stiff else ""), STIFFNESS if stiff else 1.0

@@ -13,8 +13,10 @@ from faying.errors import FayingError, InputError, shown
 from faying.surface.combine import combine
 from faying.surface.estimators.table import METHODS
 from faying.surface.form import Prepared, levelled, prepared
-from faying.surface.fractal import FractalFit, fit_fractal
-from faying.surface.scan import Profile, Scan, usable
+from faying.surface.fractal import fit_fractal
+from faying.surface.fractal_fit import FractalFit
+from faying.surface.heights import usable
+from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 from faying.units import show
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from faying.decks.deck import JointDeck, grouped, real, reals
 from faying.decks.raw import UPRIGHT_FIRST
-from faying.fe.mesh import Mesh, kind_of
+from faying.fe.mesh import Mesh
+from faying.fe.solids import kind_of
 from faying.typing import Array, Index
 
 CELLS = {

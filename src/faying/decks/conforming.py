@@ -7,8 +7,8 @@ import numpy as np
 
 from faying.decks.raw import joined
 from faying.errors import InputError
-from faying.fe.mesh import bodies_of
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
+from faying.fe.solids import bodies_of
 from faying.typing import Index
 
 LISTED = 4  # pairs of parts that a note names

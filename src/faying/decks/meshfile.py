@@ -13,8 +13,9 @@ from faying.decks.programs import MESHES, reader_of
 from faying.decks.raw import Pretension, RawMesh, joined, understood
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
-from faying.fe.mesh import Mesh, least_jacobian
+from faying.fe.mesh import Mesh
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
+from faying.fe.solids import least_jacobian
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.text import few

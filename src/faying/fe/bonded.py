@@ -2,23 +2,25 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
 from faying.errors import InputError
 from faying.fe.faces import face_centre
 from faying.fe.interface import join
-from faying.fe.mesh import Mesh
 from faying.fe.sides import Blocks
+from faying.fe.solids import SolidMesh
 from faying.notes import Note
 from faying.typing import Array, Index, Mask
 from faying.units import show_area
 
+M = TypeVar("M", bound=SolidMesh)
 CLOSE = 1e-6  # of the size of the mesh: nodes nearer than this are one
 SHARE = 1e-3  # of the area over which faces meet: how much of it may lack nodes that match
 
 
-def bonded_mesh(mesh: Mesh, pairs: Sequence[tuple[str, tuple[str, str]]], *, snap: float = 0.0) -> Mesh:
+def bonded_mesh(mesh: M, pairs: Sequence[tuple[str, tuple[str, str]]], *, snap: float = 0.0) -> M:
     """Merge the nodes of faces that are bonded, and tie those whose nodes do not match.
 
     Args:
@@ -71,7 +73,7 @@ def bonded_mesh(mesh: Mesh, pairs: Sequence[tuple[str, tuple[str, str]]], *, sna
     )
 
 
-def matched(mesh: Mesh, faces: tuple[str, str], area: float, close: float) -> Index | None:
+def matched(mesh: SolidMesh, faces: tuple[str, str], area: float, close: float) -> Index | None:
     """Nodes (2, m) of two faces that lie on each other; None where the nodes of some of what meets do not match.
 
     Args:

@@ -7,8 +7,8 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.elements import SOLIDS
-from faying.fe.mesh import Mesh
 from faying.fe.sides import Blocks
+from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index
 
 CHUNK = 100_000  # pairs of nodes at a time: keeps the blocks in cache and bounds the memory
@@ -87,7 +87,7 @@ def distinct(key: Index) -> tuple[Index, Index]:
     return ranked[new], slot
 
 
-def _chunks(mesh: Mesh) -> Iterator[tuple[str, Index]]:
+def _chunks(mesh: SolidMesh) -> Iterator[tuple[str, Index]]:
     """Element blocks part by part, a few elements at a time."""
     for name, blocks in mesh.parts.items():
         for cells in blocks:
@@ -96,7 +96,7 @@ def _chunks(mesh: Mesh) -> Iterator[tuple[str, Index]]:
                 yield name, cells[begin : begin + some]
 
 
-def assemble(mesh: Mesh, materials: Mapping[str, Solid], *, mass: str = "exact") -> tuple[Any, Any]:
+def assemble(mesh: SolidMesh, materials: Mapping[str, Solid], *, mass: str = "exact") -> tuple[Any, Any]:
     """Return stiffness [N/m] and mass [kg] of all parts as sparse CSR matrices (3n, 3n), node by node x, y, z.
 
     materials: part -> its material; mass: "exact", or "stiffness" for the coarser rule of the stiffness, with which

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.mesh import Mesh
 from faying.fe.outline import normals, outline
+from faying.fe.solids import SolidMesh
 from faying.style import COLUMN, colour, drawing, plain
 from faying.typing import Array, Index
 
@@ -163,7 +163,7 @@ def key_of(ax: Any, colours: Mapping[str, str]) -> None:
 
 
 @drawing
-def mesh_axes(mesh: Mesh, ax: "Axes | None" = None) -> "Axes":
+def mesh_axes(mesh: SolidMesh, ax: "Axes | None" = None) -> "Axes":
     """Draw a mesh with its named faces in colours of their own; as many as there are colours."""
     ax = axes_in_space(ax)
     outer = outline(mesh)

@@ -9,9 +9,9 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.elements import FACES
 from faying.fe.faces import surface_frame
-from faying.fe.mesh import Mesh
 from faying.fe.overlap import overlap
 from faying.fe.sides import Blocks, padded
+from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index
 
 
@@ -162,7 +162,7 @@ class Interface(Motion):
         return np.asarray(total / weight)
 
 
-def join(mesh: Mesh, first: str, second: str, *, search_distance: float | None = None) -> Interface:
+def join(mesh: SolidMesh, first: str, second: str, *, search_distance: float | None = None) -> Interface:
     """Pair two faces: where their meshes match, point by point; else over every overlap of two element faces.
 
     first, second: names of the faces; search_distance: the farthest that the second may lie away [m], 1 % of the
@@ -189,7 +189,7 @@ def join(mesh: Mesh, first: str, second: str, *, search_distance: float | None =
     return found
 
 
-def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
+def _matched(mesh: SolidMesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
     """Quadrature points of the first face projected on the second; None where the meshes do not match."""
     places, shares, directions, sampled = [], [], [], []
     for faces in faces_a:
@@ -227,7 +227,7 @@ def _matched(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, search_distance: floa
     )
 
 
-def _overlapping(mesh: Mesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
+def _overlapping(mesh: SolidMesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
     """Points in every overlap of two element faces; None where there is none."""
     degree = max(2 * FACES[faces.shape[1]].order for faces in (*faces_a, *faces_b))
     cut = overlap(mesh.points, faces_a, faces_b, search_distance=search_distance, degree=degree)

@@ -6,13 +6,13 @@ from faying.fe.elasticity import Solid
 from faying.fe.elements import SOLIDS
 from faying.fe.elements.element import gradients_in_space
 from faying.fe.faces import sampled
-from faying.fe.mesh import Mesh
+from faying.fe.solids import SolidMesh
 from faying.typing import Array
 
 CHUNK = 20_000  # elements at a time
 
 
-def pressure_forces(mesh: Mesh, face: str) -> Array:
+def pressure_forces(mesh: SolidMesh, face: str) -> Array:
     """Nodal forces [N] (unknowns,) of a pressure of 1 Pa that presses on a face, against its outward normal."""
     total = np.zeros((len(mesh.points), 3))
     for faces, values, _, normals, share in sampled(mesh.points, mesh.face(face)):
@@ -20,7 +20,7 @@ def pressure_forces(mesh: Mesh, face: str) -> Array:
     return total.ravel()
 
 
-def thermal_forces(mesh: Mesh, part: str, material: Solid, strain: float) -> Array:
+def thermal_forces(mesh: SolidMesh, part: str, material: Solid, strain: float) -> Array:
     """Nodal forces [N] (unknowns,) of a free expansion of a part by `strain` [-] in all directions.
 
     Under them alone the part takes that strain and has no stress, since they are integrated by the rule of its

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from faying.fe.elements import FACES
-from faying.fe.mesh import Mesh
 from faying.fe.sides import side_key, skin, triangles_of
+from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index
 
 
@@ -30,7 +30,7 @@ class Outline:
     face_of_triangle: Index
 
 
-def outline(mesh: Mesh, first: Sequence[str] = ()) -> Outline:
+def outline(mesh: SolidMesh, first: Sequence[str] = ()) -> Outline:
     """Return the outer surface of a mesh.
 
     Args:
@@ -56,7 +56,7 @@ def outline(mesh: Mesh, first: Sequence[str] = ()) -> Outline:
     )
 
 
-def _named(mesh: Mesh, sides: Index, faces: Sequence[str]) -> Index:
+def _named(mesh: SolidMesh, sides: Index, faces: Sequence[str]) -> Index:
     """The first of the faces that each element face lies on (f,), -1 where none."""
     key = side_key(sides, len(mesh.points))
     order = np.argsort(key)

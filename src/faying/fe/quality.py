@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from faying.fe.elements import SOLIDS, Element
-from faying.fe.mesh import Mesh
+from faying.fe.solids import SolidMesh
 from faying.notes import Note
 from faying.typing import Array, Index
 
@@ -72,7 +72,7 @@ def _edges_at(element: Element) -> dict[int, list[int]]:
     return out
 
 
-def quality(mesh: Mesh) -> MeshQuality:
+def quality(mesh: SolidMesh) -> MeshQuality:
     """Return what the elements of a mesh are."""
     counts: dict[str, int] = {}
     values = []

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from faying.fe.mesh import least_jacobian
+from faying.fe.solids import least_jacobian
 from faying.typing import Array, Index, Mask
 
 MIN_JACOBIAN = 0.01  # least determinant at the points of stiffness and mass over that of the straight element

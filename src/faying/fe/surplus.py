@@ -14,7 +14,7 @@ import numpy as np
 
 from faying.fe.elasticity import Solid, add_rows, distinct, pair_keys, pairs_of, stiffness_of, with_transpose
 from faying.fe.elements import SOLIDS, Element
-from faying.fe.mesh import Mesh
+from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index, Mask
 
 CHUNK = 2000  # elements at a time, which bounds the memory
@@ -39,7 +39,7 @@ class Surplus:
         (1993) 921-935, doi:10.1137/0730048: the defect of the equations, solved in the complement of the basis.
     """
 
-    mesh: Mesh
+    mesh: SolidMesh
     materials: Mapping[str, Solid]
     functions: Index
     signs: Array
@@ -47,7 +47,7 @@ class Surplus:
     left_out: Mask
 
     @classmethod
-    def of(cls, mesh: Mesh, materials: Mapping[str, Solid], loaded: Mask) -> "Surplus | None":
+    def of(cls, mesh: SolidMesh, materials: Mapping[str, Solid], loaded: Mask) -> "Surplus | None":
         """The functions of a mesh; None where it has other elements than tetrahedra of one order.
 
         Args:
@@ -147,7 +147,7 @@ def _energy(stiffness: Any, force: Array, left_out: Mask) -> Array:
     return solved
 
 
-def _chunks(mesh: Mesh) -> Iterator[tuple[str, Index, slice]]:
+def _chunks(mesh: SolidMesh) -> Iterator[tuple[str, Index, slice]]:
     """Part, elements and their place among all of them, a few at a time."""
     first = 0
     for name, blocks in mesh.parts.items():
@@ -222,7 +222,7 @@ def _straight(points: Array, cells: Index) -> Array:
     return np.asarray(nodes)
 
 
-def _assembled(mesh: Mesh, materials: Mapping[str, Solid], functions: Index, signs: Array, count: int) -> Any:
+def _assembled(mesh: SolidMesh, materials: Mapping[str, Solid], functions: Index, signs: Array, count: int) -> Any:
     """Stiffness of the functions (3 f, 3 f) [N/m]."""
     from scipy.sparse import bsr_array
 

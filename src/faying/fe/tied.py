@@ -11,15 +11,15 @@ import numpy as np
 
 from faying.fe.elements import FACES
 from faying.fe.interface import Interface, join
-from faying.fe.mesh import Mesh
 from faying.fe.sides import Blocks
+from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index
 
 STIFF = 1e5  # times E over the size of the mesh: the stiffness per area of a tie [Pa/m]
 NO_GAP = 1e-12  # of the size of the mesh: faces that lie no farther apart turn about the same points
 
 
-def tie_stiffness(mesh: Mesh, faces: tuple[str, str], modulus: float) -> Any:
+def tie_stiffness(mesh: SolidMesh, faces: tuple[str, str], modulus: float) -> Any:
     """Stiffness [N/m] (unknowns, unknowns) that ties two faces where they meet; rigid motions of both cost nothing.
 
     Args:
@@ -82,7 +82,7 @@ def _hats(met: Interface, blocks: Blocks, count: int) -> Any:
     return (at_nodes @ spread).tocsr()
 
 
-def _jump(mesh: Mesh, met: Interface) -> Any:
+def _jump(mesh: SolidMesh, met: Interface) -> Any:
     """Displacement of the second face minus that of the first (3q, unknowns), both at the place of the second."""
     from scipy.sparse import csr_array, kron
 

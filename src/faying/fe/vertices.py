@@ -6,7 +6,7 @@ from typing import Any, final
 import numpy as np
 
 from faying.fe.elements import SOLIDS
-from faying.fe.mesh import Mesh
+from faying.fe.solids import SolidMesh
 from faying.typing import Index
 
 
@@ -24,7 +24,7 @@ class VertexRestriction:
     spread: Any
 
     @classmethod
-    def of(cls, mesh: Mesh) -> "VertexRestriction | None":
+    def of(cls, mesh: SolidMesh) -> "VertexRestriction | None":
         """The corners of a mesh; None where every node is one."""
         from scipy.sparse import csr_array, kron
 

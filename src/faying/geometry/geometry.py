@@ -15,7 +15,8 @@ import numpy as np
 from faying.cache import kept
 from faying.errors import InputError
 from faying.fe.elements import KINDS
-from faying.fe.mesh import Mesh, split_at_joints
+from faying.fe.mesh import Mesh
+from faying.fe.solids import split_at_joints
 from faying.fe.straighten import straightened
 from faying.geometry.cad import CadParts, check_head, kernel, read_parts
 from faying.geometry.cad_process import Answer, ask

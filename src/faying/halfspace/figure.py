@@ -2,14 +2,14 @@
 
 from typing import Any
 
-from faying.halfspace.solution import HalfSpaceContact
+from faying.halfspace.maps import ContactMaps
 from faying.style import WIDE, drawing, new_panels
 
 # colours that stay apart in grey and for colour-blind eyes
 STATES = (("open", "#f2f2f2"), ("elastic", "#56b4e9"), ("at hardness", "#a03c00"))
 
 
-def _extent(contact: HalfSpaceContact) -> tuple[list[float], str]:
+def _extent(contact: ContactMaps) -> tuple[list[float], str]:
     """Sides of the map with a unit that suits them."""
     (ny, nx), (dx, dy) = contact.heights.shape, contact.spacing
     width, height = nx * dx, ny * dy
@@ -17,7 +17,7 @@ def _extent(contact: HalfSpaceContact) -> tuple[list[float], str]:
     return [0.0, width * factor, 0.0, height * factor], unit
 
 
-def _frame(ax: Any, contact: HalfSpaceContact, unit: str, title: str) -> None:
+def _frame(ax: Any, contact: ContactMaps, unit: str, title: str) -> None:
     ax.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]", title=title)
     ax.set_aspect("equal")
 
@@ -36,7 +36,7 @@ def _thick(mask: Any, shape: tuple[int, int], pixels: int) -> Any:
 
 
 @drawing
-def contact_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> Any:
+def contact_map(ax: Any, contact: ContactMaps, *, pixels: int = 1200) -> Any:
     """Draw into `ax` which points are open, in elastic contact and at hardness; the legend gives their shares [%]."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
@@ -63,7 +63,7 @@ def contact_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> An
 
 
 @drawing
-def pressure_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> Any:
+def pressure_map(ax: Any, contact: ContactMaps, *, pixels: int = 1200) -> Any:
     """Draw into `ax` the pressure at every point [MPa], open points white, with a colour bar."""
     import numpy as np
 
@@ -83,7 +83,7 @@ def pressure_map(ax: Any, contact: HalfSpaceContact, *, pixels: int = 1200) -> A
 
 
 @drawing
-def contact_figure(contact: HalfSpaceContact) -> Any:
+def contact_figure(contact: ContactMaps) -> Any:
     """Return a figure with the contact's states beside its pressures."""
     fig = new_panels(2, width=WIDE / 2, height=3.6)
     left, right = fig.axes

@@ -9,7 +9,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.halfspace.bounded import Problem, minimise
 from faying.halfspace.kernels import shear_kernel
-from faying.halfspace.solution import HalfSpaceContact
+from faying.halfspace.maps import ContactMaps
 from faying.halfspace.tangent import stiffness_on
 from faying.typing import Array
 
@@ -35,7 +35,7 @@ class Slip:
     residual: float
 
 
-def slip_of(contact: HalfSpaceContact, shear_ratio: float, friction: float, *, tol: float = 1e-6) -> Slip:
+def slip_of(contact: ContactMaps, shear_ratio: float, friction: float, *, tol: float = 1e-6) -> Slip:
     """Solve the partial slip at T = shear_ratio times friction times the normal load.
 
     Tractions along x with |t| <= friction p at every point; tractions across it, needed only where nu > 0 and small

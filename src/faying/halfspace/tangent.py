@@ -10,7 +10,7 @@ from faying.halfspace.arrays import namespace
 from faying.halfspace.cells import Cells
 from faying.halfspace.conjugate import CellSystem, constrained_gradients
 from faying.halfspace.kernels import Kernel, normal_kernel, shear_kernel
-from faying.halfspace.solution import HalfSpaceContact
+from faying.halfspace.maps import ContactMaps
 from faying.typing import AnyArray, Array, Mask
 
 PASSES = 12
@@ -86,7 +86,7 @@ def _uneven(moved: AnyArray) -> tuple[AnyArray, float]:
     return xp.astype(r / size, xp.float32), size
 
 
-def normal_stiffness_of(contact: HalfSpaceContact, *, loading: bool) -> float:
+def normal_stiffness_of(contact: ContactMaps, *, loading: bool) -> float:
     """Return one of the two normal stiffnesses [Pa/m]; see `HalfSpaceContact.normal_stiffness`."""
     kernel = normal_kernel(
         contact.heights.shape,
@@ -100,14 +100,14 @@ def normal_stiffness_of(contact: HalfSpaceContact, *, loading: bool) -> float:
     return float(stiffness_on(kernel, cells)[0, 0]) * contact.E_star / contact.spacing[0]
 
 
-def tangential_stiffness_of(contact: HalfSpaceContact) -> Array:
+def tangential_stiffness_of(contact: ContactMaps) -> Array:
     """Return the stiffness against shear without slip [Pa/m], shape (2, 2); see `Tangent`."""
     shape, aspect = contact.heights.shape, contact.spacing[1] / contact.spacing[0]
     shear = shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, place=contact.place)
     return stiffness_on(shear, contact.traction > 0) * contact.E_star / contact.spacing[0]
 
 
-def tangent_of(contact: HalfSpaceContact) -> Tangent:
+def tangent_of(contact: ContactMaps) -> Tangent:
     """Return the tangent stiffness of a contact; see `HalfSpaceContact.tangent`."""
     k_unload = k_load = normal_stiffness_of(contact, loading=False)
     if contact.hardness is not None and contact.at_hardness.any():

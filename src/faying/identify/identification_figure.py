@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from faying.identify.identification import Identification
+from faying.identify.identification_record import IdentificationRecord
 from faying.style import COLOURS, WIDE, axes_of, drawing, load_colours, new_figure
 from faying.typeset import name_of
 from faying.typing import Array
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @drawing
-def figure(found: Identification) -> Any:
+def figure(found: IdentificationRecord) -> Any:
     """Return the figure of an identification.
 
     Above, the 5 to 95 % of each parameter, over its prior's own 5 to 95 %: a bar as long as the prior's tells that the
@@ -30,7 +30,7 @@ def figure(found: Identification) -> Any:
 
 
 @drawing
-def identification_axes(found: Identification, ax: Any = None) -> "list[Axes]":
+def identification_axes(found: IdentificationRecord, ax: Any = None) -> "list[Axes]":
     """Draw the same into axes, one for each panel."""
     heights = _heights(found)
     axes = axes_of(ax, len(heights), width=WIDE, height=max(heights), columns=1)
@@ -38,14 +38,14 @@ def identification_axes(found: Identification, ax: Any = None) -> "list[Axes]":
     return axes
 
 
-def _draw(axes: "Sequence[Axes]", found: Identification) -> None:
+def _draw(axes: "Sequence[Axes]", found: IdentificationRecord) -> None:
     upper, *lower = axes
     _parameters(upper, found)
     for ax, (test, predicted, unit) in zip(lower, _parts(found), strict=True):
         _beside_test(ax, found, test, predicted, unit)
 
 
-def _parts(found: Identification) -> list[tuple[Array, Array, str]]:
+def _parts(found: IdentificationRecord) -> list[tuple[Array, Array, str]]:
     """What was measured, its intervals, and the unit."""
     parts = [(found.test, found.predicted, "Hz")]
     if found.losses is not None and found.predicted_losses is not None:
@@ -53,13 +53,13 @@ def _parts(found: Identification) -> list[tuple[Array, Array, str]]:
     return parts
 
 
-def _heights(found: Identification) -> list[float]:
+def _heights(found: IdentificationRecord) -> list[float]:
     """Heights of the panels [inches]."""
     heights = [0.6 + 0.22 * len(found.names)]
     return heights + [0.6 + 0.24 * found.test.shape[1] * len(found.loads) ** 0.5] * len(_parts(found))
 
 
-def _parameters(ax: Any, found: Identification) -> None:
+def _parameters(ax: Any, found: IdentificationRecord) -> None:
     """Each parameter after the test, over its prior."""
     names = found.names
     prior = np.array([one.quantile(np.array([0.05, 0.5, 0.95])) for one in found.priors])
@@ -90,7 +90,7 @@ def _parameters(ax: Any, found: Identification) -> None:
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
 
-def _beside_test(ax: Any, found: Identification, test: Array, predicted: Array, unit: str) -> None:
+def _beside_test(ax: Any, found: IdentificationRecord, test: Array, predicted: Array, unit: str) -> None:
     """Predicted quantiles (3, load, mode) over their median, and what was measured (load, mode)."""
     low, middle, high = predicted
     loads, modes = found.loads, test.shape[1]

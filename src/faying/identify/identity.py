@@ -13,7 +13,7 @@ import numpy as np
 
 from faying.measured.mac import mac, partners
 from faying.measured.pairing import FARTHEST
-from faying.sweeps.parallel import Rows
+from faying.sweeps.work import Rows
 from faying.typing import Array, Index
 
 LIKE = 0.5  # MAC with the median's mode below which a mode has no name

@@ -4,7 +4,8 @@ from pathlib import Path
 from typing import Any, get_args
 
 from faying.errors import ReadError
-from faying.identify.identification import OWN, Identification
+from faying.identify.identification import Identification
+from faying.identify.identification_record import OWN
 from faying.identify.prediction import Prediction
 from faying.misuse import checked_call
 from faying.netcdf import Group

@@ -9,7 +9,8 @@ import numpy as np
 
 from faying.case.case import mates_notes
 from faying.errors import InputError
-from faying.identify.identification import Identification, mixed
+from faying.identify.identification import Identification
+from faying.identify.identification_record import mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, paired_modes
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
@@ -25,8 +26,8 @@ from faying.study.keys.uncertain import UncertainChoice
 from faying.study.keys.varied import MODEL
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
-from faying.sweeps.parallel import Rows
 from faying.sweeps.variation import check_key
+from faying.sweeps.work import Rows
 from faying.typing import Array, Index
 
 COUNT = 1000  # samples of the posterior

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.identify.prediction import LEVELS, Prediction
+from faying.identify.prediction_record import LEVELS, PredictionRecord
 from faying.result.backbone_figure import ROUNDING, factor_of, framed, marks
 from faying.style import (
     COLOURS,
@@ -30,7 +30,7 @@ MOST_INPUTS = 6  # of the scatter matrix
 
 
 @drawing
-def intervals(found: Prediction) -> Any:
+def intervals(found: PredictionRecord) -> Any:
     """Return the figure of the 5 to 95 % of each frequency over its median, one column a preload, the test as dots."""
     count = found.observed[0].shape[2]
     fig = new_figure(WIDE, max(2.1, 1.2 + 0.24 * count * len(found.loads) ** 0.5))
@@ -40,7 +40,7 @@ def intervals(found: Prediction) -> Any:
 
 
 @drawing
-def interval_axes(found: Prediction, ax: "Axes | None" = None) -> "Axes":
+def interval_axes(found: PredictionRecord, ax: "Axes | None" = None) -> "Axes":
     """Draw the 5 to 95 % of each frequency over its median, and the test."""
     if not found.answered:
         raise InputError(f"no sample has an answer: {'; '.join(found.reasons)}")
@@ -51,7 +51,7 @@ def interval_axes(found: Prediction, ax: "Axes | None" = None) -> "Axes":
     return target
 
 
-def _draw_intervals(ax: Any, found: Prediction) -> None:
+def _draw_intervals(ax: Any, found: PredictionRecord) -> None:
     test, levels = found.observed[1], found.quantiles(LEVELS)
     low, middle, high = levels.frequencies if levels.paired is None or found.test is None else levels.paired
     count = len(found.loads)
@@ -74,7 +74,7 @@ def _draw_intervals(ax: Any, found: Prediction) -> None:
 
 
 @drawing
-def tornado(found: Prediction) -> Any:
+def tornado(found: PredictionRecord) -> Any:
     """Return the figure of the shares of the variance of each mode at the last preload, first order and total."""
     shares, _ = found.shares()
     modes = len(shares.first)
@@ -114,7 +114,7 @@ def tornado(found: Prediction) -> Any:
 
 
 @drawing
-def scatter_matrix(found: Prediction) -> Any:
+def scatter_matrix(found: PredictionRecord) -> Any:
     """Return the figure of the samples: the inputs that matter most against the frequencies at the last preload."""
     shares, _ = found.shares()
     values, _ = found.observed
@@ -139,7 +139,7 @@ def scatter_matrix(found: Prediction) -> Any:
 
 
 @drawing
-def backbones(found: Prediction) -> Any:
+def backbones(found: PredictionRecord) -> Any:
     """Return the figure of the backbones: 5 to 95 % and the median of frequency and damping, measured points over them.
 
     Thin lines are the samples, some of which may go farther than the quantiles. Raises InputError without backbones.

@@ -18,8 +18,8 @@ from faying.errors import NotConverged
 from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.interface import Interface
 from faying.fe.sides import nodes_of
+from faying.joint.bolted import BoltedStructure
 from faying.joint.springs import Springs
-from faying.joint.structure import Structure
 from faying.numerics.modes import Modes
 from faying.numerics.product import product
 from faying.numerics.solve import conjugate_gradients
@@ -56,7 +56,7 @@ class Clamping:
 
 
 def clamping(
-    structure: Structure,
+    structure: BoltedStructure,
     stiffness: Any,
     modes: Modes,
     springs: Sequence[Springs[Interface]],
@@ -101,7 +101,7 @@ def clamping(
 
 
 def _solved(
-    stiffness: Any, loads: Array, structure: Structure, modes: Modes, names: Sequence[str], like: Array | None
+    stiffness: Any, loads: Array, structure: BoltedStructure, modes: Modes, names: Sequence[str], like: Array | None
 ) -> Array:
     """K^-1 f for loads (n, b) that balance, by conjugate gradients with the shifted factorisation of the modes."""
     rigid = np.linalg.qr(structure.rigid)[0] if structure.rigid.size else np.zeros((len(loads), 0))
@@ -123,7 +123,9 @@ def _solved(
     return np.concatenate(alone, axis=1)
 
 
-def _work(structure: Structure, springs: Sequence[Springs[Interface]], fitted: FittedSolidBolt, motion: Array) -> float:
+def _work(
+    structure: BoltedStructure, springs: Sequence[Springs[Interface]], fitted: FittedSolidBolt, motion: Array
+) -> float:
     """Work [m/N] that the contacts of a meshed bolt do on what it clamps, for 1 N of tension."""
     total = 0.0
     for joint, s in zip(structure.joints, springs, strict=True):
@@ -165,7 +167,7 @@ class ClampedStack:
         return cone_compliance(self.sections, seat=self.seat[1], hole=self.seat[0], outer=self.outer)
 
 
-def stack_of(structure: Structure, index: int) -> ClampedStack | None:
+def stack_of(structure: BoltedStructure, index: int) -> ClampedStack | None:
     """Return the stack of a bolt; None for a meshed bolt, and where the joints along its axis make no chain of parts.
 
     The area of a joint belongs to the bolt whose axis is nearest.

@@ -1,5 +1,6 @@
 """Pictures of a bolted structure: its parts and joints, the pressure on a joint, a mode shape."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -7,12 +8,12 @@ import numpy as np
 
 from faying.fe.face_map import joint_map
 from faying.fe.figure import axes_in_space, draw_faces, draw_shape, key_of
-from faying.joint.state import State, VibrationModes
-from faying.joint.structure import Structure
+from faying.fe.interface import Interface
+from faying.fe.outline import Outline
+from faying.joint.springs import Springs
 from faying.style import INK, axes_of, colour, drawing, percent, plain
 from faying.text import titled
 from faying.typing import Array, Index
-from faying.units import show
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 EDGE = 0.5  # share of contact at the edge of contact
 OPEN = "#e4e7ea"  # colour of what is open
 STRAIGHT = 0.9999  # least part of a normal along an axis for a face across that axis
+Fastening = tuple[str, str, tuple[str, ...], Array | None]  # kind, name, faces and maybe seats of what is drawn
 BOLT_ENDS = 0.3  # how far a bolt stands out of its seats as it is drawn, of its length
 
 
@@ -111,12 +113,29 @@ def in_plane(places: Array) -> tuple[Array, tuple[str, str]]:
 
 
 @drawing
-def pressure_axes(state: State, joint: int, ax: "Axes | None" = None) -> "Axes":
-    """Draw the pressure on a joint of a state, shaded over the elements of its first face."""
-    structure, springs = state.structure, state.springs[joint]
-    outer, found = structure.surface(), structure.joints[joint]
-    here = outer.face_of_triangle == outer.faces.index(found.faces[0])
-    points = structure.mesh.points[outer.nodes]
+def pressure_axes(
+    outer: Outline,
+    points: Array,
+    face: str,
+    springs: Springs[Interface],
+    *,
+    most: float,
+    title: str,
+    ax: "Axes | None" = None,
+) -> "Axes":
+    """Draw the pressure on a joint, shaded over the elements of its first face.
+
+    Args:
+        outer: The outer surface of the structure.
+        points: Of the mesh (nodes, 3) [m].
+        face: First face of the joint.
+        springs: Of the joint, with the pressure at their points.
+        most: Greatest pressure of the colours [Pa].
+        title: Joint and preload; the share that is open stands behind it.
+        ax: Axes to draw into; new ones where None.
+    """
+    here = outer.face_of_triangle == outer.faces.index(face)
+    points = points[outer.nodes]
     weights, pressure = springs.interface.weights, springs.pressure
     values = joint_map(
         points,
@@ -131,59 +150,65 @@ def pressure_axes(state: State, joint: int, ax: "Axes | None" = None) -> "Axes":
         triangles=values.triangles,
         values=values.fields["pressure"][0],
         contact=values.fields["contact"][0],
-        most=max(float(s.pressure.max()) for s in state.springs),
-        title=f"{plain(found.name)}, {state.load}: {percent(share)} open",
+        most=most,
+        title=f"{plain(title)}: {percent(share)} open",
     )
+    return face_axes(drawn, ax)
+
+
+def painted_points(drawn: DrawnFace, ax: Any) -> Any:
+    """Draw a face of points, with what is open in a pale colour below it; return what a colour bar needs."""
+    flat = 1e3 * in_plane(drawn.places)[0]
+    ax.scatter(*flat.T, s=2.0, color=OPEN, linewidths=0, zorder=0)
+    return drawn.paint(ax)
+
+
+@drawing
+def face_axes(drawn: DrawnFace, ax: "Axes | None" = None) -> "Axes":
+    """Draw a face with its colour bar: of triangles, or of points with what is open below them."""
     (target,) = axes_of(ax, 1)
     width, height = np.ptp(in_plane(drawn.places)[0], axis=0)
     place: Any = "bottom" if height < 0.7 * width else "right"
-    target.figure.colorbar(drawn.paint(target), ax=target, label=drawn.label, location=place, shrink=0.9, pad=0.02)
+    painted = painted_points(drawn, target) if drawn.triangles is None else drawn.paint(target)
+    target.figure.colorbar(painted, ax=target, label=drawn.label, location=place, shrink=0.9, pad=0.02)
     return target
 
 
 @drawing
-def mode_axes(modes: VibrationModes, mode: int, ax: "Axes | None" = None) -> "Axes":
-    """Draw the shape of a mode, counted from 0."""
+def mode_axes(points: Array, triangles: Index, shape: Array, title: str, ax: "Axes | None" = None) -> "Axes":
+    """Draw a shape (n, 3) on a surface: its points (n, 3) [m], and triangles (t, 3) between them."""
     target: Any = axes_in_space(ax)
-    structure = modes.structure
-    nodes, triangles = structure.outline()
-    draw_shape(target, structure.mesh.points[nodes], triangles, modes.shapes[mode][nodes])
-    zeta = modes.damping[mode]
-    damping = "" if np.isnan(zeta) else f", damping ratio {zeta:.2g}"
-    target.set_title(f"mode {mode + 1}: {show(modes.frequencies[mode], 'Hz')}{damping}")
+    draw_shape(target, points, triangles, shape)
+    target.set_title(title)
     out: Axes = target
     return out
 
 
 @drawing
-def structure_axes(structure: Structure, ax: "Axes | None" = None) -> "Axes":
-    """Draw the parts, with the faces of joints, seats of bolts, dowels and supports in colours of their own."""
+def structure_axes(outer: Outline, points: Array, shown: Sequence[Fastening], ax: "Axes | None" = None) -> "Axes":
+    """Draw the parts, with the faces of joints, seats of bolts, dowels and supports in colours of their own.
+
+    Args:
+        outer: The outer surface.
+        points: Of the mesh (nodes, 3) [m].
+        shown: Kind, name and faces of each joint, bolt, dowel and support, and its two seats (2, 3) [m] if it has an
+            axis.
+        ax: Axes with three dimensions; new ones where None.
+    """
     target: Any = axes_in_space(ax)
-    outer = structure.surface()
     colours: dict[int, str] = {}
     key: dict[str, str] = {}
-
-    def paint(kind: str, name: str, faces: tuple[str, ...]) -> str:
+    for kind, name, faces, _ in shown:
         label = titled(kind, name)
         key[label] = colour(len(key))
         for face in faces:
             colours.setdefault(outer.faces.index(face), key[label])
-        return key[label]
-
-    for joint in structure.joints:
-        paint("joint", joint.name, joint.faces)
-    of_bolt = [paint("bolt", bolt.name, bolt.faces) for bolt in structure.bolts]
-    of_dowel = [paint("dowel", dowel.name, dowel.walls) for dowel in structure.dowels]
-    for support in structure.supports:
-        paint("support", support.face, (support.face,))
-    points = structure.mesh.points[outer.nodes]
-    draw_faces(target, points, outer.triangles, outer.face_of_triangle, colours, alpha=0.4)
-    fastened = (*structure.fitted_bolts, *structure.fitted_dowels)
-    for fitted, shade in zip(fastened, (*of_bolt, *of_dowel), strict=True):
-        start, end = fitted.seats
-        out = BOLT_ENDS * (end - start)
-        line = np.stack([start - out, end + out]) * 1e3
-        target.plot(*line.T, color=shade, lw=2.5)
+    draw_faces(target, points[outer.nodes], outer.triangles, outer.face_of_triangle, colours, alpha=0.4)
+    for kind, name, _, seats in shown:
+        if seats is not None:
+            start, end = seats
+            out = BOLT_ENDS * (end - start)
+            target.plot(*(np.stack([start - out, end + out]) * 1e3).T, color=key[titled(kind, name)], lw=2.5)
     key_of(target, dict(list(key.items())[:8]))
     drawn: Axes = target
     return drawn

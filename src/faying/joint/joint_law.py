@@ -10,8 +10,7 @@ import numpy as np
 from faying.contact.law import ContactLaw
 from faying.contact.response import Response
 from faying.errors import InputError
-from faying.joint.contact_table import ContactTable
-from faying.joint.pressure_curve import PressureCurve, cells, equal_steps, fade
+from faying.joint.pressure_curve import ContactTable, PressureCurve, cells, equal_steps, fade
 from faying.joint.springs import Motion, Springs
 from faying.typing import Array, Index
 

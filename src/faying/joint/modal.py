@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-from faying.joint.structure import Structure
+from faying.joint.bolted import BoltedStructure
 from faying.numerics.solve import BY_PARTS, MPI
 
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
@@ -31,7 +31,7 @@ class ModesChoice:
 class ModalProblem:
     """A structure, and what is asked about its modes."""
 
-    structure: Structure
+    structure: BoltedStructure
     choice: ModesChoice = field(default_factory=ModesChoice)
 
     @property

@@ -9,14 +9,15 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.interface import Interface
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
+from faying.joint.figure import mode_axes, pressure_axes
 from faying.joint.modal import MAX_MODES, SOLVERS, ModalProblem, ModesChoice
 from faying.joint.preload import PreloadProblem
 from faying.joint.preload_case import PreloadCase
 from faying.joint.shared_modes import EXACT, SharedModes
 from faying.joint.springs import Springs
 from faying.joint.strength import bolt_notes, material_notes, pressure_notes
-from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload, open_joints
 from faying.misuse import checked_call, shortened
 from faying.notes import Note, percent
@@ -78,7 +79,7 @@ class VibrationModes(Summary):
     frequencies: Array
     loss_factors: Array
     shapes: Array
-    structure: Structure
+    structure: BoltedStructure
     load: str = ""
 
     @property
@@ -118,9 +119,9 @@ class VibrationModes(Summary):
         Raises:
             InputError: There is no such mode.
         """
-        from faying.joint.figure import mode_axes
-
-        return mode_axes(self, self.number(mode), ax)
+        k, (nodes, triangles) = self.number(mode), self.structure.outline()
+        title = f"mode {k + 1}: {show(self.frequencies[k], 'Hz')}{_ratio(self.damping[k])}"
+        return mode_axes(self.structure.mesh.points[nodes], triangles, self.shapes[k][nodes], title, ax)
 
     def number(self, mode: int) -> int:
         """Index of a mode, counted from 0. Raises InputError where there is none of this number."""
@@ -147,7 +148,7 @@ class State(Summary):
         notes: Where a law leaves its validity range, and the like.
     """
 
-    structure: Structure
+    structure: BoltedStructure
     forces: tuple[float, ...]
     preload: PreloadState
     springs: tuple[Springs[Interface], ...]
@@ -218,16 +219,23 @@ class State(Summary):
         Raises:
             InputError: There is no joint of this name.
         """
-        from faying.joint.figure import pressure_axes
-
         names = [one.name for one in self.structure.joints]
         if joint is not None and joint not in names:
             raise InputError(f"joint = {shortened(joint)}; the joints are {', '.join(map(repr, names))}")
-        return pressure_axes(self, 0 if joint is None else names.index(joint), ax)
+        number = 0 if joint is None else names.index(joint)
+        return pressure_axes(
+            self.structure.surface(),
+            self.structure.mesh.points,
+            self.structure.joints[number].faces[0],
+            self.springs[number],
+            most=max(float(one.pressure.max()) for one in self.springs),
+            title=f"{names[number]}, {self.load}",
+            ax=ax,
+        )
 
 
 def solve_structure(
-    structure: Structure,
+    structure: BoltedStructure,
     preload: float | str | Mapping[str, float | str],
     *,
     modes: int,
@@ -263,13 +271,13 @@ def solve_structure(
 
 
 def preload_case(
-    structure: Structure, preload: float | str | Mapping[str, float | str], order: Sequence[str] | None
+    structure: BoltedStructure, preload: float | str | Mapping[str, float | str], order: Sequence[str] | None
 ) -> PreloadCase:
     """One preload of a structure, from what a user gives. Raises InputError where it is incomplete."""
     return PreloadCase(forces=bolt_forces(structure, preload), order=_order(structure, order))
 
 
-def bolt_forces(structure: Structure, preload: float | str | Mapping[str, float | str]) -> tuple[float, ...]:
+def bolt_forces(structure: BoltedStructure, preload: float | str | Mapping[str, float | str]) -> tuple[float, ...]:
     """Force of each bolt [N]. Raises InputError where one is missing, unknown or not positive."""
     names = [bolt.name for bolt in structure.bolts]
     if not names:
@@ -296,7 +304,7 @@ def _solver(solver: str | None) -> str | None:
     return solver
 
 
-def _order(structure: Structure, order: Sequence[str] | None) -> tuple[int, ...] | None:
+def _order(structure: BoltedStructure, order: Sequence[str] | None) -> tuple[int, ...] | None:
     if order is None:
         return None
     names = [bolt.name for bolt in structure.bolts]
@@ -305,7 +313,7 @@ def _order(structure: Structure, order: Sequence[str] | None) -> tuple[int, ...]
     return tuple(names.index(name) for name in order)
 
 
-def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[Note]:
+def law_notes(structure: BoltedStructure, preload: PreloadState, load: float) -> list[Note]:
     """Say where contact is lost, and how much of a joint's stiffness lies outside the validity range of its law."""
     kilo = load_text(load)
     out = [
@@ -320,7 +328,7 @@ def law_notes(structure: Structure, preload: PreloadState, load: float) -> list[
     return out
 
 
-def end_notes(structure: Structure, springs: Sequence[Springs[Interface]], load: float) -> list[Note]:
+def end_notes(structure: BoltedStructure, springs: Sequence[Springs[Interface]], load: float) -> list[Note]:
     """Say where the pressure exceeds the end of a law, with the share of the joint's area."""
     out = []
     for joint, s in zip(structure.joints, springs, strict=True):

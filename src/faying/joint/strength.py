@@ -12,7 +12,7 @@ from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
 from faying.errors import InputError
 from faying.fe.elasticity import Solid
 from faying.fe.faces import NamedFaces, face_centre
-from faying.joint.structure import Structure
+from faying.joint.bolted import BoltedStructure
 from faying.notes import Note, percent
 from faying.typing import Array
 from faying.units import load_text, show
@@ -180,7 +180,7 @@ def _strength(structure: Bolted, face: str) -> float | None:
     return found
 
 
-def pressure_notes(structure: Structure, pressures: Sequence[Array], load: float) -> list[Note]:
+def pressure_notes(structure: BoltedStructure, pressures: Sequence[Array], load: float) -> list[Note]:
     """Say on which share of a joint the nominal pressure exceeds the yield strength of the softer part."""
     out = []
     for joint, pressure in zip(structure.joints, pressures, strict=True):

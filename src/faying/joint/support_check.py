@@ -7,9 +7,9 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.elasticity import rigid_motions
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import Equilibrium, PreloadState
 from faying.joint.preload_case import PreloadCase
-from faying.joint.structure import Structure
 from faying.joint.tighten import tighten
 from faying.numerics.modes import Modes
 from faying.typing import Array
@@ -19,7 +19,7 @@ BENT = 0.01  # share of the energy of a motion above which it is not one of the 
 NOTHING = 1e-6  # of the greatest pressure
 
 
-def checked_preload(structure: Structure, assembly: Equilibrium, case: PreloadCase) -> PreloadState:
+def checked_preload(structure: BoltedStructure, assembly: Equilibrium, case: PreloadCase) -> PreloadState:
     """`tighten` for one preload, and check that no part is left free to move.
 
     Raises InputError where a part is not, also in place of the NotConverged that this leads to, and what `tighten`
@@ -36,13 +36,13 @@ def checked_preload(structure: Structure, assembly: Equilibrium, case: PreloadCa
     return found
 
 
-def open_joints(structure: Structure, pressures: Sequence[Array]) -> list[str]:
+def open_joints(structure: BoltedStructure, pressures: Sequence[Array]) -> list[str]:
     """Names of the joints that carry nothing, or next to nothing beside the others."""
     least = NOTHING * max(float(p.max()) for p in pressures)
     return [joint.name for joint, p in zip(structure.joints, pressures, strict=True) if p.max() <= least]
 
 
-def check_contact(structure: Structure, pressures: Sequence[Array], openings: Sequence[Array]) -> None:
+def check_contact(structure: BoltedStructure, pressures: Sequence[Array], openings: Sequence[Array]) -> None:
     """Raise InputError where parts are left that no contact, shank or support connects with the rest."""
     owner = structure.mesh.face_part
     group = {part: part for part in structure.mesh.parts}
@@ -82,7 +82,7 @@ def check_contact(structure: Structure, pressures: Sequence[Array], openings: Se
     )
 
 
-def check_motions(structure: Structure, modes: Modes) -> None:
+def check_motions(structure: BoltedStructure, modes: Modes) -> None:
     """Raise InputError where a part moves freely though neither its supports nor the want of any explain it."""
     rigid_count = structure.rigid_count
     free = np.flatnonzero(modes.frequencies < RIGID_BELOW * np.sqrt(modes.shift) / (2 * np.pi))
@@ -97,7 +97,7 @@ def check_motions(structure: Structure, modes: Modes) -> None:
     )
 
 
-def _bent(structure: Structure, shapes: Array) -> Array:
+def _bent(structure: BoltedStructure, shapes: Array) -> Array:
     """Share (m,) of the kinetic energy of shapes that is not a rigid motion of the whole."""
     whole, mass = rigid_motions(structure.mesh.points), structure.matrices[1]
     rest = shapes - whole @ np.linalg.solve(whole.T @ (mass @ whole), whole.T @ (mass @ shapes))
@@ -105,7 +105,7 @@ def _bent(structure: Structure, shapes: Array) -> Array:
     return np.asarray(energy[0] / energy[1])
 
 
-def _mover(structure: Structure, shapes: Any) -> str:
+def _mover(structure: BoltedStructure, shapes: Any) -> str:
     """The smallest part that moves otherwise than as the whole does in a space of motions without energy."""
     rigid = structure.rigid
     mass = structure.matrices[1]

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from faying.errors import InputError
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import Equilibrium, PreloadState
 from faying.joint.preload import PreloadProblem
-from faying.joint.structure import Structure
 from faying.typing import Array
 
 BALANCED = 1e-9  # of the load: what is out of balance then moves pressures by some 1e-10 of the greatest
@@ -16,7 +16,7 @@ SNUG = 0.01  # of its force, in a solid bolt that is yet to be tightened: withou
 
 
 def tighten_together(
-    structure: Structure, assembly: PreloadProblem, forces: Sequence[Sequence[float]]
+    structure: BoltedStructure, assembly: PreloadProblem, forces: Sequence[Sequence[float]]
 ) -> list[PreloadState | None]:
     """As `tighten` for several sets of forces [N] at once, all bolts pulled at once; see `solve_together`."""
     loads = structure.loads
@@ -28,7 +28,7 @@ def tighten_together(
 
 
 def tighten(
-    structure: Structure,
+    structure: BoltedStructure,
     assembly: Equilibrium,
     forces: Sequence[float],
     *,

@@ -11,8 +11,8 @@ from faying.fe.attach import mean_motion
 from faying.fe.faces import face_centre
 from faying.fe.nodal_forces import pressure_forces, thermal_forces
 from faying.joint.attachments import nearest_node
+from faying.joint.bolted import BoltedStructure
 from faying.joint.joint import known_face
-from faying.joint.structure import Structure
 from faying.loads.load import Displacement, Force, Load
 from faying.typing import Array
 from faying.units import show
@@ -58,13 +58,13 @@ class Acting:
         )
 
 
-def nothing(structure: Structure) -> Acting:
+def nothing(structure: BoltedStructure) -> Acting:
     """Return what a case without any load does."""
     none = np.zeros(structure.mesh.unknowns)
     return Acting(force=none, moved=none, longer=np.zeros(len(structure.bolts)), strains={})
 
 
-def acting(structure: Structure, loads: Sequence[Load]) -> dict[str, Acting]:
+def acting(structure: BoltedStructure, loads: Sequence[Load]) -> dict[str, Acting]:
     """Return what each case does, by its name; cases come after those that they name.
 
     Raises:
@@ -82,7 +82,7 @@ def acting(structure: Structure, loads: Sequence[Load]) -> dict[str, Acting]:
     return out
 
 
-def _own(structure: Structure, load: Load) -> Acting:
+def _own(structure: BoltedStructure, load: Load) -> Acting:
     mesh, what = structure.mesh, f"load {load.name!r}"
     force = np.zeros(mesh.unknowns)
     for one in load.forces:
@@ -99,7 +99,7 @@ def _own(structure: Structure, load: Load) -> Acting:
     return Acting(force=force + heat, moved=moved.ravel(), longer=longer, strains=strains)
 
 
-def _force(structure: Structure, one: Force, what: str) -> Array:
+def _force(structure: BoltedStructure, one: Force, what: str) -> Array:
     mesh = structure.mesh
     if one.face is None:
         assert one.point is not None
@@ -112,7 +112,7 @@ def _force(structure: Structure, one: Force, what: str) -> Array:
     return np.asarray(motion.T @ np.array([*one.force, *one.moment]))
 
 
-def _heat(structure: Structure, changes: Mapping[str, float], what: str) -> tuple[Array, Array, dict[str, float]]:
+def _heat(structure: BoltedStructure, changes: Mapping[str, float], what: str) -> tuple[Array, Array, dict[str, float]]:
     """Nodal forces [N] of heated parts and bolts, free lengthening [m] of the bolts and strain [-] of the parts."""
     mesh, bolts = structure.mesh, structure.fitted_bolts
     force, longer, strains = np.zeros(mesh.unknowns), np.zeros(len(bolts)), {}
@@ -161,7 +161,7 @@ def _expansion(material: object, what: str) -> float:
     return float(found)
 
 
-def _move(structure: Structure, one: Displacement, moved: Array, what: str) -> None:
+def _move(structure: BoltedStructure, one: Displacement, moved: Array, what: str) -> None:
     """Put the displacement of a supported face in its place."""
     known_face(structure.mesh, one.face, what)
     nodes = structure.mesh.face_nodes(one.face)
@@ -184,7 +184,7 @@ def _move(structure: Structure, one: Displacement, moved: Array, what: str) -> N
         moved[nodes, axis] = size
 
 
-def check_supported(structure: Structure, name: str, force: Array) -> None:
+def check_supported(structure: BoltedStructure, name: str, force: Array) -> None:
     """Raise InputError where nothing holds a structure against what is left over of a load [N] (unknowns,)."""
     if not structure.rigid.size:
         return

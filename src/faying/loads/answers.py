@@ -9,9 +9,9 @@ import numpy as np
 from faying.bolt.bolt import Bolt, FittedBolt
 from faying.bolt.solid_bolt import FittedSolidBolt
 from faying.fe.nodal_forces import thermal_forces
+from faying.joint.bolted import BoltedStructure
 from faying.joint.clamping import stack_of
 from faying.joint.strength import seat_area
-from faying.joint.structure import Structure
 from faying.loads.contact import LoadedContact
 from faying.loads.statics import LoadedState
 from faying.numerics.product import product
@@ -34,7 +34,7 @@ class Regions:
     joints: tuple[tuple[int, ...], ...]
 
     @classmethod
-    def of(cls, structure: Structure) -> "Regions":
+    def of(cls, structure: BoltedStructure) -> "Regions":
         """Return the regions of a structure."""
         bolts = structure.fitted_bolts
         nearest = []
@@ -84,7 +84,7 @@ class JointAnswers:
 
 
 def joint_answers(
-    structure: Structure,
+    structure: BoltedStructure,
     contacts: Sequence[LoadedContact],
     states: Sequence[LoadedState],
     dissipated: Sequence[Array],
@@ -184,7 +184,7 @@ class BoltAnswers:
 
 
 def bolt_answers(
-    structure: Structure,
+    structure: BoltedStructure,
     contacts: Sequence[LoadedContact],
     preload: Array,
     states: Sequence[tuple[LoadedState, Array, Array]],
@@ -226,7 +226,7 @@ def bolt_answers(
     )
 
 
-def bolt_changes(structure: Structure, state: LoadedState, motion: Array) -> Array:
+def bolt_changes(structure: BoltedStructure, state: LoadedState, motion: Array) -> Array:
     """Change of the force of each bolt [N] (b,) by a displacement [m] (unknowns,) under the load of a state."""
     out = structure.bolt_force_operator @ motion
     for k, fitted in enumerate(structure.fitted_bolts):
@@ -237,7 +237,7 @@ def bolt_changes(structure: Structure, state: LoadedState, motion: Array) -> Arr
     return np.asarray(out)
 
 
-def _bent(structure: Structure, index: int, state: LoadedState, motion: Array) -> tuple[float, float]:
+def _bent(structure: BoltedStructure, index: int, state: LoadedState, motion: Array) -> tuple[float, float]:
     """Greater bending moment [N m] of both ends of a bolt, and force across it [N]; NaN without a shank."""
     fitted = structure.fitted_bolts[index]
     if isinstance(fitted, FittedBolt):
@@ -253,7 +253,7 @@ def _bent(structure: Structure, index: int, state: LoadedState, motion: Array) -
     return float(np.linalg.norm(work[2:])), float(np.linalg.norm(work[:2]))
 
 
-def _section_moves(structure: Structure, fitted: FittedSolidBolt) -> Array:
+def _section_moves(structure: BoltedStructure, fitted: FittedSolidBolt) -> Array:
     """Motions (unknowns, 4) of the far half of a meshed bolt: along two axes across it, and about them."""
     axis = fitted.seats[1] - fitted.seats[0]
     axis = axis / np.linalg.norm(axis)
@@ -267,7 +267,7 @@ def _section_moves(structure: Structure, fitted: FittedSolidBolt) -> Array:
     return np.stack([one.ravel() for one in moves], axis=1)
 
 
-def _own_heat(structure: Structure, fitted: FittedSolidBolt, state: LoadedState) -> Array:
+def _own_heat(structure: BoltedStructure, fitted: FittedSolidBolt, state: LoadedState) -> Array:
     """Nodal forces [N] (unknowns,) of the heat of a meshed bolt."""
     part = fitted.bolt.part
     strain = state.acting.strains.get(part, 0.0)
@@ -275,7 +275,7 @@ def _own_heat(structure: Structure, fitted: FittedSolidBolt, state: LoadedState)
 
 
 def _carried(
-    structure: Structure, contacts: Sequence[LoadedContact], state: LoadedState, regions: Regions, index: int
+    structure: BoltedStructure, contacts: Sequence[LoadedContact], state: LoadedState, regions: Regions, index: int
 ) -> tuple[Array, Array]:
     """Change of the normal force, and shear with torque [N], round a bolt at each joint that it clamps."""
     change, across = [], []
@@ -293,7 +293,7 @@ def _greatest(values: Array) -> float:
     return float(values[np.argmax(np.abs(values))]) if len(values) else 0.0
 
 
-def _least_area(structure: Structure, index: int) -> float:
+def _least_area(structure: BoltedStructure, index: int) -> float:
     """The smaller area [m2] of a bolt's two seats; NaN for a meshed bolt."""
     fitted = structure.fitted_bolts[index]
     if not isinstance(fitted, FittedBolt):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from faying.joint.structure import Structure
+from faying.joint.bolted import BoltedStructure
 from faying.loads.answers import BoltAnswers, JointAnswers
 from faying.loads.contact import LoadedContact
 from faying.notes import Note, percent
@@ -16,7 +16,7 @@ LITTLE = 0.01  # of a joint's normal force beyond which it is said that the load
 
 
 def load_notes(
-    structure: Structure,
+    structure: BoltedStructure,
     contacts: Sequence[LoadedContact],
     cases: Sequence[str],
     pressures: Sequence[Sequence[Array]],

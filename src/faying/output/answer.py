@@ -6,7 +6,7 @@ from faying.case.scatter import SCATTER
 from faying.output.table import Rows, by_mode, damping_at
 from faying.result import Result
 from faying.result.interval import Interval
-from faying.result.result import preload_slope
+from faying.result.run_record import preload_slope
 from faying.result.score import Score
 from faying.result.shape_names import part_and_axis
 from faying.typing import Array

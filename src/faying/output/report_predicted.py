@@ -5,7 +5,8 @@ from html import escape
 
 from faying.errors import InputError
 from faying.identify.identification import Identification
-from faying.identify.prediction import LEVELS, Prediction
+from faying.identify.prediction import Prediction
+from faying.identify.prediction_record import LEVELS
 from faying.notes import Note
 from faying.output import page, prediction
 from faying.units import load_text

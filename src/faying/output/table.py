@@ -12,7 +12,7 @@ from faying.output.terminal import text as text
 from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.difference import of_joint
-from faying.result.result import preload_slope
+from faying.result.run_record import preload_slope
 from faying.text import in_columns
 from faying.typing import Array
 from faying.units import load_text, show

@@ -2,6 +2,7 @@
 
 from faying.result.bolts import BoltNumbers
 from faying.result.provenance import Provenance
-from faying.result.result import MeasuredComparison, Receptance, Result, read_model_modes
+from faying.result.result import Result, read_model_modes
+from faying.result.run_record import MeasuredComparison, Receptance
 
 __all__ = ["BoltNumbers", "MeasuredComparison", "Provenance", "Receptance", "Result", "read_model_modes"]

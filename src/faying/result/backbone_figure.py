@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.measured.ring_down import MeasuredBackbone
-from faying.result.backbone import Backbone
+from faying.result.backbone_record import BackboneRecord
 from faying.style import COLUMN, axes_of, colour, drawing, headline, legend_above, new_figure, plain, plain_numbers
 from faying.units import in_mm, load_text
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 ROUNDING = 1e-9  # of the greatest damping: less is rounding
 
 
-def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
+def label(curve: BackboneRecord, curves: Sequence[BackboneRecord]) -> str:
     """What tells a curve from the others: law, friction and preload, where these differ."""
     parts = []
     if len({other.laws for other in curves}) > 1:
@@ -30,7 +30,7 @@ def label(curve: Backbone, curves: Sequence[Backbone]) -> str:
 
 
 @drawing
-def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence[MeasuredBackbone] = ()) -> Any:
+def panel(ax: Any, curves: Sequence[BackboneRecord], quantity: str, measured: Sequence[MeasuredBackbone] = ()) -> Any:
     """Draw frequency [Hz] or damping [%] of curves over acceleration, the static cycle as circles.
 
     quantity: "frequency" or "damping". Measured points, those of the curves' study first, are hollow,
@@ -106,7 +106,7 @@ def framed(ax: Any, quantity: str) -> Any:
 
 
 @drawing
-def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()) -> Any:
+def figure(curves: Sequence[BackboneRecord], measured: Sequence[MeasuredBackbone] = ()) -> Any:
     """Return the figure of curves of one mode: frequency above, damping below, over the same acceleration.
 
     Args:
@@ -125,7 +125,7 @@ def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()
 
 
 @drawing
-def backbone_axes(curve: Backbone, ax: Any = None) -> "list[Axes]":
+def backbone_axes(curve: BackboneRecord, ax: Any = None) -> "list[Axes]":
     """Draw frequency and damping of a curve, one axes each."""
     axes = axes_of(ax, 2, width=COLUMN, height=2.7)
     for one, quantity in zip(axes, ("frequency", "damping"), strict=True):

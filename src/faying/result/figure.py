@@ -7,7 +7,7 @@ import numpy as np
 from faying.fe.figure import draw_shape_flat, frame_of, moved_by
 from faying.joint.figure import DrawnFace, in_plane
 from faying.result.maps import joint_map_of
-from faying.result.result import Result
+from faying.result.run_record import RunRecord
 from faying.result.shape_names import shape_name
 from faying.style import (
     COLOURS,
@@ -38,7 +38,7 @@ NEAR = 1.0  # how far a bonded frequency may lie above the curves to be drawn, o
 
 
 @drawing
-def face_map(ax: Any, result: Result, field: str, load: int = -1, joint: int = 0) -> Any:
+def face_map(ax: Any, result: RunRecord, field: str, load: int = -1, joint: int = 0) -> Any:
     """Draw pressure or slip on one joint at one load, on its face at one scale, and return what a colour bar needs.
 
     The colours span all loads and joints; what is open stays pale, and a line marks the edge of contact. Values are
@@ -63,18 +63,18 @@ def face_map(ax: Any, result: Result, field: str, load: int = -1, joint: int = 0
     ).paint(ax)
 
 
-def pressures(result: Result) -> Any:
+def pressures(result: RunRecord) -> Any:
     """Return a figure of the pressure on each joint at the least and the greatest preload."""
     return _faces(result, "pressure")
 
 
-def slips(result: Result) -> Any:
+def slips(result: RunRecord) -> Any:
     """Return a figure of the slip in each joint at the least and the greatest preload."""
     return _faces(result, "slip")
 
 
 @drawing
-def _faces(result: Result, field: str) -> Any:
+def _faces(result: RunRecord, field: str) -> Any:
     loads = sorted({0, len(result.loads) - 1})
     tall = []
     for joint in range(len(result.joints)):
@@ -98,7 +98,7 @@ def _faces(result: Result, field: str) -> Any:
 
 
 @drawing
-def frequencies(result: Result) -> Any:
+def frequencies(result: RunRecord) -> Any:
     """Return a figure of every mode's frequency against preload, with its band and the test."""
     fig, axes = mode_panels(len(result.bonded), sharex=True)
     for mode, ax in enumerate(axes):
@@ -122,7 +122,7 @@ def mode_panels(count: int, **shared: bool) -> tuple[Any, list[Any]]:
 
 
 @drawing
-def frequency_axes(result: Result, modes: int, ax: Any = None) -> "list[Axes]":
+def frequency_axes(result: RunRecord, modes: int, ax: Any = None) -> "list[Axes]":
     """Draw frequency [Hz] against preload [kN], one axes for each of the first modes, with bands and the test."""
     axes = axes_of(ax, modes, width=WIDE / 3, height=1.9, columns=3)
     for mode, one in enumerate(axes):
@@ -135,7 +135,7 @@ def frequency_axes(result: Result, modes: int, ax: Any = None) -> "list[Axes]":
     return axes
 
 
-def _against_preload(ax: Any, result: Result, mode: int) -> None:
+def _against_preload(ax: Any, result: RunRecord, mode: int) -> None:
     """One mode: band, curve of the study, other laws, the test, and bonded faces where they lie near."""
     load, f = result.loads * 1e-3, result.frequencies[:, mode]
     if result.interval_low is not None and result.interval_high is not None:
@@ -174,7 +174,7 @@ def band(ax: Any, x: Any, low: Any, high: Any, *, label: str) -> None:
 
 
 @drawing
-def comparison(ax: Any, result: Result) -> Any:
+def comparison(ax: Any, result: RunRecord) -> Any:
     """Draw the difference of study and published model from the test, one mark a mode and load.
 
     A bar is 5 to 95 % of the study about its own frequency.
@@ -210,7 +210,7 @@ def comparison(ax: Any, result: Result) -> Any:
     return ax
 
 
-def _ends(result: Result, row: int) -> Any:
+def _ends(result: RunRecord, row: int) -> Any:
     """How far 5 and 95 % lie from the study's frequencies, in % of the test (2, test mode); None without intervals."""
     c = result.comparison
     if c is None or result.interval_low is None or result.interval_high is None:
@@ -222,7 +222,7 @@ def _ends(result: Result, row: int) -> Any:
 
 
 @drawing
-def mode_shapes(result: Result, load: int = -1) -> Any:
+def mode_shapes(result: RunRecord, load: int = -1) -> Any:
     """Return a sheet of all mode shapes at one load, in frames of one size and scale.
 
     Above each: frequency, name of the shape, and damping where the result has it.
@@ -248,7 +248,7 @@ def mode_shapes(result: Result, load: int = -1) -> Any:
     return fig
 
 
-def shape_words(result: Result, mode: int, load: int = -1) -> str:
+def shape_words(result: RunRecord, mode: int, load: int = -1) -> str:
     """Return what stands above a mode shape: frequency, name and damping, one a line."""
     lines = [f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", plain(shape_name(result, mode, load))]
     if result.levels is not None and result.level_damping is not None:
@@ -260,7 +260,7 @@ def shape_words(result: Result, mode: int, load: int = -1) -> str:
 
 
 @drawing
-def law_curves(ax: Any, result: Result) -> Any:
+def law_curves(ax: Any, result: RunRecord) -> Any:
     """Draw the stiffness of the joints' points against their pressure at the greatest load, open points left out."""
     pressure = result.pressure[-1]
     groups: dict[str, list[int]] = {}

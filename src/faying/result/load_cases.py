@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from faying.errors import InputError
+from faying.joint.figure import DrawnFace, face_axes
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.result.fields import Recorded, in_units, listed, optional, variable
 from faying.result.provenance import Provenance
+from faying.style import headline, percent
 from faying.typing import Array, Index
 from faying.units import show
 
@@ -218,12 +220,26 @@ class LoadCases(Recorded):
         Raises:
             InputError: There is no such case or joint.
         """
-        from faying.result.load_cases_figure import case_axes
-
         if joint is not None and joint not in self.joints:
             raise InputError(f"joint = {shortened(joint)}; the joints are {', '.join(map(repr, self.joints))}")
         number = len(self.cases) - 1 if case is None else self.index(case)
-        return case_axes(self, number, 0 if joint is None else self.joints.index(joint), ax)
+        drawn = self.face(number, 0 if joint is None else self.joints.index(joint))
+        return face_axes(drawn, ax)
+
+    def face(self, case: int | None, joint: int, size: float = 1.0) -> DrawnFace:
+        """A joint as it is drawn under a case, both counted from 0, or under the preload alone; size: of its points."""
+        here = self.joint_of_point == joint
+        pressures = np.vstack([self.rest_pressure[here], self.pressure[:, here]])
+        title = "preload" if case is None else headline(self.cases[case], 14)
+        opens = "" if case is None else f": {percent(float(self.opened[case, joint]))} opens"
+        return DrawnFace(
+            places=self.positions[here],
+            triangles=None,
+            values=pressures[0 if case is None else case + 1],
+            most=float(pressures.max()),
+            areas=size * self.areas[here],
+            title=title + opens,
+        )
 
 
 def _margin(friction: Array, needed: Array) -> Array:

@@ -3,10 +3,10 @@
 import numpy as np
 
 from faying.fe.face_map import FaceValues, joint_map
-from faying.result.result import Result
+from faying.result.run_record import RunRecord
 
 
-def joint_map_of(result: Result, joint: int, *, contact: bool = False) -> FaceValues | None:
+def joint_map_of(result: RunRecord, joint: int, *, contact: bool = False) -> FaceValues | None:
     """Values on the first face of a joint; None where the result does not say which triangles those are.
 
     contact: whether the share of the area around each place that carries pressure is one of them.

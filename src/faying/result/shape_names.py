@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from faying.result.result import Result
+from faying.result.run_record import RunRecord
 from faying.typing import Array
 
 BOTH = 0.6  # of the greater motion that the other parts must have for "all"
@@ -11,7 +11,7 @@ SLICES = 16  # along a long structure
 MOSTLY = 0.7  # of the mean square motion that a word must account for
 
 
-def part_and_axis(result: Result, mode: int, load: int = -1) -> tuple[str, str]:
+def part_and_axis(result: RunRecord, mode: int, load: int = -1) -> tuple[str, str]:
     """Which part moves most ("all" or "both" where they move alike, "" where there is one), and along which axis."""
     shape = result.shapes[load, mode].astype(float)
     part_of_node = np.zeros(len(shape), dtype=int)
@@ -27,7 +27,7 @@ def part_and_axis(result: Result, mode: int, load: int = -1) -> tuple[str, str]:
     return result.parts[int(np.argmax(sizes))], axis
 
 
-def shape_name(result: Result, mode: int, load: int = -1) -> str:
+def shape_name(result: RunRecord, mode: int, load: int = -1) -> str:
     """Return a short name of a mode shape: "bending, y", "torsion", "stretch", or which part moves along which axis."""
     found = long_shape(result.outline, result.shapes[load, mode].astype(float))
     if found:

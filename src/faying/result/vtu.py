@@ -14,14 +14,14 @@ import numpy as np
 from faying.errors import InputError
 from faying.files import make_folder, write_text
 from faying.result.maps import joint_map_of
-from faying.result.result import Result
+from faying.result.run_record import RunRecord
 
 TRIANGLE = 5  # VTK's number of a triangle with three nodes
 TYPES = {"f": ("Float64", np.float64), "i": ("Int64", np.int64), "u": ("UInt8", np.uint8)}
 UNITS = {"pressure": "Pa", "gap": "m", "slip": "m", "k_n": "Pa/m", "k_t": "Pa/m"}
 
 
-def write_vtu(result: Result, path: str | Path) -> list[Path]:
+def write_vtu(result: RunRecord, path: str | Path) -> list[Path]:
     """Write NAME.pvd and NAME-1.vtu, NAME-2.vtu and so on, one for each preload; see `Result.save_vtu`."""
     file = Path(path)
     if file.suffix.lower() not in (".pvd", ".vtu"):
@@ -39,7 +39,7 @@ def write_vtu(result: Result, path: str | Path) -> list[Path]:
     return [write_text(file.with_suffix(".pvd"), f"{text}</VTKFile>\n"), *every]
 
 
-def _grid(result: Result, maps: list[Any], load: int) -> str:
+def _grid(result: RunRecord, maps: list[Any], load: int) -> str:
     """The text of one .vtu."""
     found = [(joint, one) for joint, one in enumerate(maps) if one is not None]
     nodes = len(result.outline)

@@ -19,9 +19,9 @@ from faying.geometry.face_facts import FaceFacts, GeometryFacts, read_facts
 from faying.geometry.face_triangles import FaceTriangles
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import TOUCHING, chosen, points_of
+from faying.joint.bolted import nothing_moves, seat_apart
 from faying.joint.joint import each_pair_once
 from faying.joint.strength import SolidPlace, bolt_notes, material_notes
-from faying.joint.structure import nothing_moves, seat_apart
 from faying.memory import available
 from faying.notes import Note
 from faying.progress import duration

@@ -9,7 +9,7 @@ from faying.errors import InputError, NotConverged
 from faying.surface.convention import prefactor
 from faying.surface.estimators.spectral import clean_spectrum, of_law
 from faying.surface.form import Prepared, prepared
-from faying.surface.fractal import Facts, FractalFit, result
+from faying.surface.fractal_fit import Facts, FractalFit, result
 from faying.surface.powerlaw import fit, fit_band, smearing, supported_band
 from faying.surface.scan import Scan
 from faying.surface.spectrum import Spectrum

@@ -10,8 +10,8 @@ from faying.errors import InputError
 from faying.style import COLOURS, SMALL, WIDE, axes_of, colour, drawing, new_figure, plain, save
 from faying.surface.convention import density
 from faying.surface.form import Prepared, prepared
-from faying.surface.fractal import FractalFit
-from faying.surface.scan import Profile, Scan
+from faying.surface.fractal_numbers import FractalNumbers
+from faying.surface.heights import AreaHeights, LineHeights
 from faying.surface.spectrum import Spectrum, spectrum
 from faying.typeset import unit
 from faying.units import show
@@ -31,7 +31,7 @@ def _unit(value: float) -> tuple[float, str]:
 
 
 @drawing
-def height_map(scan: Scan, ax: Any) -> Any:
+def height_map(scan: AreaHeights, ax: Any) -> Any:
     """Draw the heights as a map; colours span the central 98 % of the heights."""
     factor, name = _unit(max(scan.size))
     low, high = np.nanquantile(scan.heights, [0.01, 0.99])
@@ -52,7 +52,7 @@ def height_map(scan: Scan, ax: Any) -> Any:
 
 
 @drawing
-def profile(scan: Profile, ax: Any) -> Any:
+def profile(scan: LineHeights, ax: Any) -> Any:
     """Draw a line of heights."""
     factor, name = _unit(scan.length)
     scale, tall = _unit(float(np.nanmax(np.abs(scan.heights))))
@@ -64,7 +64,7 @@ def profile(scan: Profile, ax: Any) -> Any:
 
 
 @drawing
-def power_spectrum(of: Spectrum, fits: Mapping[str, FractalFit | str], ax: Any, *, name: str = "scan") -> Any:
+def power_spectrum(of: Spectrum, fits: Mapping[str, FractalNumbers | str], ax: Any, *, name: str = "scan") -> Any:
     """Draw the power per radial frequency with the law of each fit over its band; wavelengths along the top.
 
     Where there are several fits, their colours are those of `estimators`.
@@ -95,12 +95,12 @@ def _inverse(x: Any) -> Any:
 
 
 @drawing
-def overview_of(scan: Scan | Profile, axes: Any, *, degree: int) -> "list[Axes]":
+def overview_of(scan: AreaHeights | LineHeights, axes: Any, *, degree: int) -> "list[Axes]":
     """Draw levelled heights and their spectrum for `plot` of a scan or profile; missing points stay blank."""
     ready = prepared(scan, degree=degree)
     heights, power = axes_of(axes, 2)
     holes = ready.scan.with_heights(np.where(ready.known, ready.scan.heights, np.nan))
-    if isinstance(scan, Scan):
+    if isinstance(scan, AreaHeights):
         height_map(holes, heights)
     else:
         profile(holes, heights)
@@ -110,7 +110,7 @@ def overview_of(scan: Scan | Profile, axes: Any, *, degree: int) -> "list[Axes]"
 
 
 @drawing
-def fit_plot(fit: FractalFit, ax: Any) -> "Axes":
+def fit_plot(fit: FractalNumbers, ax: Any) -> "Axes":
     """Draw the spectrum, the band of a fit shaded, its power law in the band and thin beyond it."""
     if fit.drawn is None:
         raise InputError("this fit was made from numbers alone and has no spectrum to draw; make it with fit_fractal")
@@ -132,7 +132,7 @@ def fit_plot(fit: FractalFit, ax: Any) -> "Axes":
 
 
 @drawing
-def estimators(fits: Mapping[str, FractalFit | str], ax: Any) -> Any:
+def estimators(fits: Mapping[str, FractalNumbers | str], ax: Any) -> Any:
     """Draw D of every estimator with its 95 % interval."""
     good = [(name, fit) for name, fit in fits.items() if not isinstance(fit, str)]
     for row, (name, fit) in enumerate(good):
@@ -146,7 +146,9 @@ def estimators(fits: Mapping[str, FractalFit | str], ax: Any) -> Any:
     return ax
 
 
-def overview(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFit | str], path: str | Path) -> Path:
+def overview(
+    scan: AreaHeights | LineHeights, ready: Prepared, fits: Mapping[str, FractalNumbers | str], path: str | Path
+) -> Path:
     """Write one figure of map (or line), a profile, the spectrum and the estimators; the suffix sets the format.
 
     Raises InputError for a suffix that matplotlib does not know or a folder that cannot be written.
@@ -155,11 +157,11 @@ def overview(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFi
 
 
 @drawing
-def overview_figure(scan: Scan | Profile, ready: Prepared, fits: Mapping[str, FractalFit | str]) -> Any:
+def overview_figure(scan: AreaHeights | LineHeights, ready: Prepared, fits: Mapping[str, FractalNumbers | str]) -> Any:
     """Return the figure of map (or line), a profile, the spectrum and the estimators of a scan."""
     figure = new_figure(WIDE, 5.6)
     axes = figure.subplots(2, 2)
-    if isinstance(scan, Scan):
+    if isinstance(scan, AreaHeights):
         height_map(ready.scan, axes[0, 0])
         profile(ready.scan.profile("x", scan.shape[0] // 2), axes[0, 1])
         axes[0, 1].set_title("middle row, levelled")

@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.surface.form import Lines
-from faying.surface.scan import sides_of, steps_of
+from faying.surface.heights import sides_of, steps_of
 
 ALPHA = (log(2) / pi) ** 0.5  # half the amplitude passes at the cut-off
 

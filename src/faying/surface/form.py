@@ -7,10 +7,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from faying.errors import InputError, shown
-from faying.surface.scan import Profile, Scan, usable
+from faying.surface.heights import AreaHeights, LineHeights, usable
 from faying.typing import Array, Mask
 
-Lines = TypeVar("Lines", bound=Scan | Profile)
+Lines = TypeVar("Lines", bound=AreaHeights | LineHeights)
 
 SPIKE = 12.0  # how many robust standard deviations above its neighbours' median makes a point a spike
 
@@ -29,7 +29,7 @@ class Prepared:
     spikes: int
 
 
-def _design(scan: Scan | Profile, degree: int) -> list[Array]:
+def _design(scan: AreaHeights | LineHeights, degree: int) -> list[Array]:
     """Monomials up to total `degree` over coordinates scaled to -1..1, each broadcastable to the heights' shape."""
     axes = [np.linspace(-1, 1, n) for n in scan.heights.shape]
     if len(axes) == 1:
@@ -117,7 +117,7 @@ def _pyramid(values: Array, weight: Array) -> Array:
     return np.where(weight > 0, values / np.where(weight > 0, weight, 1.0), coarse[:rows, :columns])
 
 
-def find_spikes(scan: Scan | Profile) -> Mask:
+def find_spikes(scan: AreaHeights | LineHeights) -> Mask:
     """Mark single points that stand out from the median of their neighbours (5 points of a line, 3 x 3 of a scan).
 
     A point is a spike where it differs from that median by more than `SPIKE` times the robust standard deviation
@@ -143,10 +143,10 @@ def find_spikes(scan: Scan | Profile) -> Mask:
     return np.asarray(candidates & (away > SPIKE * around), bool)
 
 
-_PREPARED: WeakKeyDictionary[Scan | Profile, dict[tuple[int, bool], Prepared]] = WeakKeyDictionary()
+_PREPARED: WeakKeyDictionary[AreaHeights | LineHeights, dict[tuple[int, bool], Prepared]] = WeakKeyDictionary()
 
 
-def prepared(scan: Scan | Profile, *, degree: int = 1, spikes: bool = True) -> Prepared:
+def prepared(scan: AreaHeights | LineHeights, *, degree: int = 1, spikes: bool = True) -> Prepared:
     """Level a scan, treat spikes as missing points (unless spikes=False), fill all missing points, count both.
 
     Raises InputError when more than half the points are missing, all heights are equal, or there are under 16 points
@@ -159,10 +159,10 @@ def prepared(scan: Scan | Profile, *, degree: int = 1, spikes: bool = True) -> P
     return made[degree, spikes]
 
 
-def _prepared(scan: Scan | Profile, degree: int, spikes: bool) -> Prepared:
+def _prepared(scan: AreaHeights | LineHeights, degree: int, spikes: bool) -> Prepared:
     usable(scan)
     missing = scan.missing
-    level: Scan | Profile = levelled(scan, degree)
+    level: AreaHeights | LineHeights = levelled(scan, degree)
     found = find_spikes(level) if spikes else np.zeros(scan.heights.shape, bool)
     count = int(found.sum())
     if count:

@@ -1,173 +1,190 @@
-"""What a scan and a profile do alike: roughness, fractal dimension, levelling, figures."""
+"""Measured heights with their spacing: frozen, in metres, missing points as NaN."""
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Self, cast
+from dataclasses import dataclass, field, replace
+from typing import Any, Self, final
 
 import numpy as np
 
-from faying.checks import text
-from faying.errors import FayingError, InputError
-from faying.style import Summary
-
-if TYPE_CHECKING:
-    import matplotlib.axes
-
-    from faying.surface.fractal import FractalFit
-    from faying.surface.roughness import Roughness
-    from faying.surface.scan import Profile, Scan
+from faying.checks import instance, number, shown, text
+from faying.errors import InputError, ReadError
+from faying.memory import GB, available
+from faying.typing import Array
 
 
-class Heights(Summary):
-    """Measured heights; `Scan` and `Profile` are the two kinds of them."""
+@final
+@dataclass(frozen=True, kw_only=True)
+class Instrument:
+    """What the file says of the instrument; None where it says nothing. Lengths in metres.
 
-    @property
-    def _self(self) -> "Scan | Profile":
-        return cast("Scan | Profile", self)
+    `resolution` is the shortest lateral wavelength that the instrument resolves, `noise` the rms height noise.
+    """
+
+    name: str = ""
+    tip_radius: float | None = None
+    resolution: float | None = None
+    noise: float | None = None
+
+
+BYTES = 160.0  # at the peak of reading and preparing, for each point
+
+
+def check_points(source: str, count: float) -> None:
+    """Raise ReadError where a scan of so many points does not fit into the machine's free memory."""
+    need, free = BYTES * count, available()
+    if free is not None and need > free:
+        raise ReadError(
+            f"{source}: {count:.3g} points need about {need / GB:.3g} GB and {free / GB:.3g} GB are free; crop the "
+            "scan or take every second point before reading it, or set FAYING_MEMORY to the GB that may be taken"
+        )
+
+
+def _frozen(heights: Any, dimensions: int, name: str) -> Array:
+    try:
+        given = np.ma.asarray(heights)
+        out = np.ma.filled(given.astype(np.float64), np.nan) if given.dtype.kind in "fiu" else None
+    except (TypeError, ValueError):
+        out = None
+    if out is None:
+        raise InputError(
+            f"{name}: heights = {shown(heights)}; give real numbers in metres, NaN where a point is missing"
+        )
+    if out.ndim != dimensions:
+        want = "rows and columns, heights[iy, ix]" if dimensions == 2 else "one row of points"
+        raise InputError(f"{name}: heights have {out.ndim} dimensions; give {want}")
+    if min(out.shape) < 2:
+        raise InputError(f"{name}: heights of shape {out.shape} have too few points; at least 2 are needed each way")
+    if np.isinf(out).any():
+        raise InputError(f"{name}: some heights are infinite; mark missing points as NaN")
+    out = np.array(out, copy=True)
+    out.setflags(write=False)
+    return out
+
+
+def _describe(scan: "AreaHeights | LineHeights") -> None:
+    """Raise InputError where what is said of the heights is not of its kind."""
+    kind = type(scan).__name__
+    instance(scan.source, str, f"{kind}: source", "give the name of the file or recipe as text")
+    instance(
+        scan.instrument, Instrument, f"{kind}: instrument", "give a faying.surface.scan.Instrument, or leave it out"
+    )
+    for name in ("history", "notes"):
+        lines = getattr(scan, name)
+        if not isinstance(lines, list | tuple) or not all(isinstance(line, str) for line in lines):
+            raise InputError(f"{kind}: {name} = {shown(lines)}; give a tuple of texts, or leave it out")
+        object.__setattr__(scan, name, tuple(lines))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class _Points:
+    """What both kinds of heights have."""
+
+    heights: Array
+    source: str = "array"
+    instrument: Instrument = field(default_factory=Instrument)
+    history: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def missing(self) -> int:
         """How many points have no height."""
-        return int(np.isnan(self._self.heights).sum())
-
-    @property
-    def Sq(self) -> float:
-        """Rms height of a scan, levelled [m], ISO 25178-2; InputError for a profile and heights without a statistic."""
-        return self.roughness().Sq
-
-    @property
-    def Sa(self) -> float:
-        """Mean absolute height of a scan, levelled [m], ISO 25178-2; InputError as for `Sq`."""
-        return self.roughness().Sa
-
-    @property
-    def Rq(self) -> float:
-        """Rms height of a profile, levelled [m], ISO 21920-2; InputError for a scan and heights without a statistic."""
-        return self._of_a_line("Rq").Rq
-
-    @property
-    def Ra(self) -> float:
-        """Mean absolute height of a profile, levelled [m], ISO 21920-2; InputError as for `Rq`."""
-        return self._of_a_line("Ra").Ra
-
-    def _of_a_line(self, name: str) -> "Roughness":
-        if self._self.heights.ndim == 2:
-            raise InputError(
-                f"{name} is a number of a profile; this is a scan, which has S{name[1:]}, or take a profile of it"
-            )
-        return self.roughness()
-
-    def roughness(self, *, degree: int = 1) -> "Roughness":
-        """Return the roughness over the known points, levelled and without spikes.
-
-        Args:
-            degree: of the polynomial that levels the heights, 0 to 8.
-
-        Returns:
-            Sq, Sa, Sz, Ssk, Sku, Sdq, Sdr of a scan; Rq, Ra, Rz, Rsk, Rku, Rdq, Rdr of a profile.
-
-        Raises:
-            InputError: for another degree, and for heights that carry no statistic.
-
-        Source:
-            ISO 25178-2 and ISO 21920-2, without a filter.
-        """
-        from faying.surface.roughness import roughness
-
-        return roughness(self._self, degree=degree)
-
-    def fractal(
-        self,
-        method: str = "psd",
-        *,
-        band: "tuple[float, float] | tuple[str, str] | None" = None,
-        degree: int = 1,
-        spikes: bool = True,
-        convention: str = "yan-komvopoulos",
-        gamma: float = 1.5,
-        self_test: bool = False,
-    ) -> "FractalFit":
-        """Return D and G with their intervals, and the band of wavelengths that they hold in.
-
-        Args, Returns and Raises are those of `faying.fit_fractal`.
-        """
-        from faying.surface.fractal import fit_fractal
-
-        return fit_fractal(
-            self._self,
-            method,
-            band=band,
-            degree=degree,
-            spikes=spikes,
-            convention=convention,
-            gamma=gamma,
-            self_test=self_test,
-        )
-
-    def levelled(self, degree: int = 1) -> Self:
-        """Return the heights less their least-squares polynomial of this degree (0 mean, 1 plane or line, 2 .. form).
-
-        Missing points stay missing. Raises InputError for a degree outside 0 to 8 and for too few known points.
-        """
-        from faying.surface.form import levelled
-
-        return cast("Self", levelled(self._self, degree))
-
-    def without_spikes(self) -> Self:
-        """Return the heights with single outlying points marked as missing; judged on levelled heights.
-
-        Raises InputError as `levelled`.
-        """
-        from faying.surface.form import find_spikes, levelled
-
-        spikes = find_spikes(levelled(self._self))
-        note = f"{int(spikes.sum())} spikes taken out"
-        return cast("Self", self._self.with_heights(np.where(spikes, np.nan, self._self.heights), note))
-
-    def filled(self) -> Self:
-        """Return the heights with missing points filled in smoothly from their neighbours; InputError without any."""
-        from faying.surface.form import filled
-
-        return cast("Self", filled(self._self))
-
-    def plot(self, axes: Any = None, *, degree: int = 1) -> "list[matplotlib.axes.Axes]":
-        """Draw the levelled heights, as a map or a line, and their power spectrum.
-
-        Args:
-            axes: two matplotlib axes to draw into; a new figure where None.
-            degree: of the polynomial that levels the heights, 0 to 8.
-
-        Returns:
-            Both axes.
-
-        Raises:
-            InputError: for anything but two axes, and for heights that carry no statistic.
-        """
-        from faying.surface.figure import overview_of
-
-        return overview_of(self._self, axes, degree=degree)
+        return int(np.isnan(self.heights).sum())
 
     def with_heights(self, heights: Any, note: str = "") -> Self:
-        """Return the same scan or profile with other heights [m] and one more line of history."""
-        of = self._self
-        history = (*of.history, note) if text(note, "note") else of.history
-        return cast("Self", replace(of, heights=heights, history=history))
+        """Return the same heights with other values [m] and one more line of history."""
+        return replace(self, heights=heights, history=(*self.history, note) if text(note, "note") else self.history)
 
-    def _statistics(self) -> tuple[str, str]:
-        """Rms height as a line of the summary: its name and its text, or why there is none."""
-        name = "Sq" if self._self.heights.ndim == 2 else "Rq"
-        from faying.units import show
 
-        try:
-            return name, f"{show(self.roughness().Rq, 'm')}, levelled by a {'plane' if name == 'Sq' else 'line'}"
-        except FayingError as fault:
-            return name, f"none: {fault}"
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class AreaHeights(_Points):
+    """The data of `Scan`, which says what they are."""
 
-    def _origin(self) -> dict[str, str]:
-        """Where the heights come from, and what was done to them since."""
-        of = self._self
-        rows = {"missing": f"{self.missing} of {of.heights.size} points", "source": of.source}
-        if of.history:
-            rows["history"] = "; ".join(of.history)
-        if of.notes:
-            rows["notes"] = "; ".join(of.notes)
-        return rows
+    spacing: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "heights", _frozen(self.heights, 2, "Scan"))
+        if not isinstance(self.spacing, (tuple, list, np.ndarray)) or len(self.spacing) != 2:
+            raise InputError(f"Scan: spacing = {shown(self.spacing)}; give the two distances (dx, dy) in metres")
+        dx, dy = self.spacing
+        steps = number(dx, "Scan: dx", "m", least=0), number(dy, "Scan: dy", "m", least=0)
+        object.__setattr__(self, "spacing", steps)
+        _describe(self)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(ny, nx), as of the heights."""
+        return self.heights.shape[0], self.heights.shape[1]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """(Lx, Ly) [m]: number of points times spacing."""
+        return self.shape[1] * self.spacing[0], self.shape[0] * self.spacing[1]
+
+    def cropped(self, share: float) -> Self:
+        """Return the middle part of the scan.
+
+        Args:
+            share: length of each side of the part over that of the scan, 0 < share <= 1.
+
+        Returns:
+            The part, of whole points; its spacing is that of the scan.
+
+        Raises:
+            InputError: for a share outside 0 .. 1, and where fewer than 5 points a side are left.
+        """
+        share = number(share, "share", least=0, greatest=1, ends="(]")
+        rows, columns = (max(1, round(share * n)) for n in self.shape)
+        if min(rows, columns) < 5:
+            raise InputError(
+                f"share = {share} of {self.shape} points leaves {rows} x {columns}; at least 5 points a side are "
+                "needed: give a larger share"
+            )
+        top, left = (self.shape[0] - rows) // 2, (self.shape[1] - columns) // 2
+        part = self.heights[top : top + rows, left : left + columns]
+        return self.with_heights(part, f"cropped to the middle {rows} x {columns} points")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class LineHeights(_Points):
+    """The data of `Profile`, which says what they are."""
+
+    spacing: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "heights", _frozen(self.heights, 1, "Profile"))
+        object.__setattr__(self, "spacing", number(self.spacing, "Profile: spacing", "m", least=0))
+        _describe(self)
+
+    @property
+    def length(self) -> float:
+        """Number of points times spacing [m]."""
+        return len(self.heights) * self.spacing
+
+
+def steps_of(scan: AreaHeights | LineHeights) -> tuple[float, ...]:
+    """Spacings [m] in the order of the axes of the heights."""
+    return (scan.spacing,) if isinstance(scan, LineHeights) else (scan.spacing[1], scan.spacing[0])
+
+
+def sides_of(scan: AreaHeights | LineHeights) -> tuple[float, ...]:
+    """Sides [m] in the order of the axes of the heights."""
+    return tuple(n * step for n, step in zip(scan.heights.shape, steps_of(scan), strict=True))
+
+
+MIN_POINTS = 16  # each way, that a statistic needs
+
+
+def usable(scan: AreaHeights | LineHeights) -> None:
+    """Raise InputError where the heights cannot carry a statistic: too few points, all missing, or all the same."""
+    heights = scan.heights
+    known = heights[~np.isnan(heights)]
+    if known.size == 0:
+        raise InputError(f"{scan.source}: every point is missing; there is nothing to analyse")
+    if min(heights.shape) < MIN_POINTS:
+        raise InputError(f"{scan.source}: {heights.shape} points; the analysis needs at least {MIN_POINTS} each way")
+    if known.size < heights.size / 2:
+        share = 100 * (1 - known.size / heights.size)
+        raise InputError(f"{scan.source}: {share:.0f} % of the points are missing; at most half may be, crop the scan")
+    if np.ptp(known) <= 1e-12 * float(np.abs(known).max()):
+        raise InputError(
+            f"{scan.source}: all heights are the same ({known[0]:.4g} m); there is no roughness to analyse"
+        )

@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 
 from faying.surface.form import prepared
-from faying.surface.scan import Scan
+from faying.surface.heights import AreaHeights
 from faying.surface.spectrum import periodogram
 
 
@@ -24,7 +24,7 @@ class Lay:
     present: bool
 
 
-def find_lay(scan: Scan) -> Lay:
+def find_lay(scan: AreaHeights) -> Lay:
     """Find the lay from the power over directions, each ring of frequency counting alike.
 
     strength = |sum over rings of <P exp(2 i theta)>/<P>| / rings, between 6 cycles over the side and half the Nyquist

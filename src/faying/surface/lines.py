@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from faying.surface.scan import Scan
+from faying.surface.heights import AreaHeights
 from faying.typing import Array, Mask
 
 THRESHOLD = 40.0  # a coefficient this many times its surroundings' mean; chance reaches 20 now and then
@@ -11,7 +11,7 @@ MOST = 20000  # more candidates than this are an uneven spectrum, not lines
 LARGEST = 0.25  # share of the rings of frequency that tool marks may rule
 
 
-def find_lines(scan: Scan, power: Array, frequency: Array) -> Mask:
+def find_lines(scan: AreaHeights, power: Array, frequency: Array) -> Mask:
     """Mark the coefficients of a periodogram (half-plane, as from `spectrum.periodogram`) that lie on sharp peaks.
 
     The periodogram is divided by the median over each ring of frequency; a coefficient is on a peak where it is 40

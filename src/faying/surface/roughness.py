@@ -8,7 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.style import Summary
 from faying.surface.form import Prepared, prepared
-from faying.surface.scan import Profile, Scan, steps_of
+from faying.surface.heights import AreaHeights, LineHeights, steps_of
 from faying.typing import Array
 from faying.units import show
 
@@ -114,7 +114,7 @@ def _like(name: str) -> str:
     return ("R" if name[0] == "S" else "S") + name[1:]
 
 
-def roughness(scan: Scan | Profile | Prepared, *, degree: int = 1) -> Roughness:
+def roughness(scan: AreaHeights | LineHeights | Prepared, *, degree: int = 1) -> Roughness:
     """Return the roughness of a scan or profile after levelling by a polynomial of `degree` and without its spikes.
 
     Missing points are left out, not filled. Raises InputError as `faying.surface.form.prepared` does.
@@ -157,7 +157,7 @@ def _developed(slopes: list[Array]) -> float:
 LENGTHS = 5  # sampling lengths in a line
 
 
-def mean_peak_to_valley(scan: Scan | Profile | Prepared) -> float:
+def mean_peak_to_valley(scan: AreaHeights | LineHeights | Prepared) -> float:
     """Return Rz [m], the mean of highest minus lowest height over five parts of each line, without a filter.
 
     For an areal scan the larger of that along x and along y: across the lay. Lines are as long as the scan is, be it

@@ -9,10 +9,10 @@ from faying.errors import FayingError, NotConverged
 from faying.surface.convention import prefactor
 from faying.surface.estimators.base import Z95, with_intervals
 from faying.surface.form import prepared
-from faying.surface.fractal import Facts, FractalFit, fit_fractal, result
+from faying.surface.fractal_fit import Facts, FractalFit, plain_fit, result
+from faying.surface.heights import AreaHeights, LineHeights
 from faying.surface.lay import find_lay
-from faying.surface.scan import Profile, Scan
-from faying.surface.synthesize import spectral, with_missing, with_noise
+from faying.surface.synthesis import spectral_heights, with_missing, with_noise
 from faying.typing import Array
 
 LARGEST = 1024  # points a side of the synthetic surfaces; larger scans are tested at this size
@@ -35,7 +35,7 @@ def stretch_of(strength: float, D: float) -> float:
 
 
 def self_test(
-    scan: Scan | Profile,
+    scan: AreaHeights | LineHeights,
     method: str,
     *,
     rounds: int = 24,
@@ -56,8 +56,8 @@ def self_test(
     from scipy.stats import t as student
 
     options: dict[str, Any] = {"degree": degree, "spikes": spikes, "convention": convention, "gamma": gamma}
-    raw = fit_fractal(scan, method, **options)
-    base = raw if method == "psd" else fit_fractal(scan, "psd", **options)
+    raw = plain_fit(scan, method, **options)
+    base = raw if method == "psd" else plain_fit(scan, "psd", **options)
     c = prefactor(convention, gamma)
     centre = min(max(base.D, 2.2), 2.8)
     pivot = (raw.band[0] * raw.band[1]) ** -0.5
@@ -70,7 +70,7 @@ def self_test(
         G = float(np.exp((level + (7 - 2 * D) * log(pivot) + log(2 / c)) / (2 * D - 4)))
         fake = _like(scan, D, G, base, rng, convention, gamma)
         try:
-            fit = fit_fractal(fake, method, **options)
+            fit = plain_fit(fake, method, **options)
         except FayingError:
             continue
         rows.append((D, fit.D, _log_density(fit, pivot, c) - level))
@@ -87,24 +87,31 @@ def _log_density(fit: FractalFit, f: float, c: float) -> float:
 
 
 def _like(
-    scan: Scan | Profile, D: float, G: float, base: FractalFit, rng: np.random.Generator, convention: str, gamma: float
-) -> Scan | Profile:
+    scan: AreaHeights | LineHeights,
+    D: float,
+    G: float,
+    base: FractalFit,
+    rng: np.random.Generator,
+    convention: str,
+    gamma: float,
+) -> AreaHeights | LineHeights:
     counts = tuple(min(n, LARGEST) for n in scan.heights.shape)
     share = scan.missing / scan.heights.size
     common: dict[str, Any] = {"D": D, "G": G, "convention": convention, "gamma": gamma, "seed": rng}
-    if isinstance(scan, Profile):
-        return spectral(counts[0], spacing=scan.spacing, **common)
+    if isinstance(scan, LineHeights):
+        line, steps, source = spectral_heights(counts[0], spacing=scan.spacing, **common)
+        return LineHeights(heights=line, spacing=steps[0], source=source)
     lay = find_lay(scan)
     stretch = (lay.angle, stretch_of(lay.strength, D)) if lay.present else None
-    made = spectral((counts[0], counts[1]), spacing=scan.spacing, lay=stretch, **common)
-    assert isinstance(made, Scan)
+    z, _, source = spectral_heights((counts[0], counts[1]), spacing=scan.spacing, lay=stretch, **common)
+    made = AreaHeights(heights=z, spacing=scan.spacing, source=source)
     if base.noise > 0:
         made = with_noise(made, rms=base.noise, seed=int(rng.integers(2**31)))
     return with_missing(made, share=share, seed=int(rng.integers(2**31))) if share > 0 else made
 
 
 def _corrected(
-    scan: Scan | Profile, raw: FractalFit, rows: Array, pivot: float, options: dict[str, Any], student: Any
+    scan: AreaHeights | LineHeights, raw: FractalFit, rows: Array, pivot: float, options: dict[str, Any], student: Any
 ) -> FractalFit:
     c = prefactor(options["convention"], options["gamma"])
     gain, offset = (float(v) for v in np.polyfit(rows[:, 0], rows[:, 1], 1))

@@ -11,7 +11,7 @@ from typing import Any, final
 
 import numpy as np
 
-from faying.surface.scan import Profile, Scan, sides_of, steps_of
+from faying.surface.heights import AreaHeights, LineHeights, sides_of, steps_of
 from faying.typing import Array, Mask
 
 # Hann window: sum of the squared correlations between neighbouring Fourier coefficients, per axis (1 + 2 (4/9 + 1/36))
@@ -66,7 +66,7 @@ def _hann(count: int) -> Array:
     return 0.5 - 0.5 * np.cos(2 * pi * (np.arange(count) + 0.5) / count)
 
 
-def spectrum(scan: Scan | Profile, *, ratio: float = 1.06) -> Spectrum:
+def spectrum(scan: AreaHeights | LineHeights, *, ratio: float = 1.06) -> Spectrum:
     """Return the Hann-windowed power spectrum of levelled heights without missing points, averaged over directions.
 
     Bins are two Fourier steps wide at least and grow by `ratio`. No user errors: the heights come from `form.prepared`.
@@ -74,12 +74,12 @@ def spectrum(scan: Scan | Profile, *, ratio: float = 1.06) -> Spectrum:
     return binned(scan, *periodogram(scan), ratio=ratio)
 
 
-def periodogram(scan: Scan | Profile) -> tuple[Array, Array, tuple[Array, ...]]:
+def periodogram(scan: AreaHeights | LineHeights) -> tuple[Array, Array, tuple[Array, ...]]:
     """Return the two-sided periodogram [m4 or m3] on the half-plane of rfft, the radial frequency and the axes."""
     from scipy import fft
 
     z = scan.heights
-    if isinstance(scan, Profile):
+    if isinstance(scan, LineHeights):
         window = _hann(len(z))
         f = fft.rfftfreq(len(z), scan.spacing)
         scale = scan.spacing / float(np.sum(window**2))
@@ -99,7 +99,7 @@ def periodogram(scan: Scan | Profile) -> tuple[Array, Array, tuple[Array, ...]]:
 
 
 def binned(
-    scan: Scan | Profile,
+    scan: AreaHeights | LineHeights,
     power: Array,
     frequency: Array,
     axes: tuple[Array, ...],
@@ -180,7 +180,7 @@ def _products(z: Array, known: Array, shape: tuple[int, ...]) -> tuple[Array, Ar
 
 
 def structure_function(
-    scan: Scan | Profile, *, known: Mask | None = None, longest: float = 0.125, ratio: float = 1.12
+    scan: AreaHeights | LineHeights, *, known: Mask | None = None, longest: float = 0.125, ratio: float = 1.12
 ) -> StructureFunction:
     """Return the structure function for lags from one point to `longest` times the shortest side.
 

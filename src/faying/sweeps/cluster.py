@@ -13,7 +13,7 @@ from typing import Any
 
 from faying.errors import FayingError, InputError
 from faying.progress import duration
-from faying.sweeps.parallel import Rows, Work
+from faying.sweeps.work import Rows, Work
 
 ANSWER = 10.0  # s that the cluster is given to answer
 LOOK = 1.0  # s between two looks at the cluster while nothing comes

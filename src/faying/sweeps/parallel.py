@@ -3,16 +3,11 @@
 import os
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
 
-import numpy as np
+from faying.sweeps.cluster import on_cluster
+from faying.sweeps.work import Rows, Work
 
-from faying.errors import FayingError
-from faying.typing import Array
-
-Rows = dict[str, Array]
-Work = Callable[[Sequence[int]], Rows]
 LOOK = 0.5  # s between two looks of a worker for its parent
 
 
@@ -37,8 +32,6 @@ def each(
             yield indices, work(indices)
         return
     if dask is not None:
-        from faying.sweeps.cluster import on_cluster
-
         if chunks:
             yield from on_cluster(work, chunks, dask, what)
         return
@@ -48,20 +41,6 @@ def each(
         n_jobs=jobs, return_as="generator_unordered", backend="loky", initializer=end_with, initargs=(os.getpid(),)
     )
     yield from pool(delayed(_done)(work, c) for c in chunks)
-
-
-def rows_of(points: Iterable[int], answer: Callable[[int], Mapping[str, Any]], nothing: Mapping[str, Any]) -> Rows:
-    """Rows of some points: what `answer` gives of each, `nothing` where there is no answer, and `reasons` why."""
-    rows: dict[str, list[Any]] = {name: [] for name in (*nothing, "reasons")}
-    for point in points:
-        found, reason = nothing, ""
-        try:
-            found = answer(point)
-        except FayingError as fault:
-            reason = str(fault)
-        for name, value in {**found, "reasons": reason}.items():
-            rows[name].append(value)
-    return {name: np.array(values) for name, values in rows.items()}
 
 
 def _done(work: Work, indices: Sequence[int]) -> tuple[Sequence[int], Rows]:

@@ -43,7 +43,8 @@ def command(
     """Roughness, fractal dimension D and fractal roughness G of the scan in FILE."""
     from faying.surface.files.read import read_scan
     from faying.surface.form import prepared
-    from faying.surface.fractal import FractalFit, fit_all, fit_fractal
+    from faying.surface.fractal import fit_all, fit_fractal
+    from faying.surface.fractal_fit import FractalFit
     from faying.surface.roughness import roughness
 
     given = {"size": size, "spacing": spacing}

@@ -17,9 +17,9 @@ from faying.contact.parameter import TABLE, TEXT, Parameter
 from faying.contact.pressure_series import PressureSeries, cached, cached_numbers, solve_series
 from faying.errors import InputError, shown
 from faying.halfspace.arrays import Device
+from faying.halfspace.sized import solve_with_size
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.solve import halved_map, refined_map, solve_half_space
-from faying.halfspace.spots import solve_with_size
 from faying.hardness import VickersHardness
 from faying.materials import ContactPair
 from faying.typing import Array

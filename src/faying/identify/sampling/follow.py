@@ -19,8 +19,9 @@ from faying.microslip.epmc import PER_DECADE
 from faying.result.backbone import Backbone
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.study import Study
-from faying.sweeps.parallel import Rows, each, rows_of
+from faying.sweeps.parallel import each
 from faying.sweeps.variant_builder import VariantBuilder
+from faying.sweeps.work import Rows, rows_of
 from faying.typing import Array
 
 FEWEST = 8  # backbones

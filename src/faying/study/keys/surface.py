@@ -14,7 +14,7 @@ from faying.study.declaration.declared import QUANTITY, Declared, Key
 from faying.study.declaration.reader import Table
 from faying.surface.estimators.table import METHODS
 from faying.surface.files.read import read_scan
-from faying.surface.fractal import FractalFit
+from faying.surface.fractal_fit import FractalFit
 from faying.surface.scan import Profile, Scan
 
 

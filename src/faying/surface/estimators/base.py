@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.surface.convention import G_from_density, density
 from faying.surface.form import Prepared
-from faying.surface.scan import Profile, Scan, steps_of
+from faying.surface.heights import AreaHeights, LineHeights, steps_of
 from faying.typing import Array
 
 Z95 = 1.959963984540054  # two-sided 95 % point of the normal distribution
@@ -102,6 +102,6 @@ def with_intervals(
     )
 
 
-def white_rms(scan: Scan | Profile, noise: float) -> float:
+def white_rms(scan: AreaHeights | LineHeights, noise: float) -> float:
     """Rms height [m] of a white level of the two-sided density."""
     return float((max(noise, 0.0) / float(np.prod(steps_of(scan)))) ** 0.5)

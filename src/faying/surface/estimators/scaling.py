@@ -13,7 +13,7 @@ from faying.errors import FayingError, NotConverged
 from faying.surface.convention import cut_factor
 from faying.surface.estimators.base import Z95, Estimate, Limits, with_intervals
 from faying.surface.form import Prepared
-from faying.surface.scan import sides_of, steps_of
+from faying.surface.heights import sides_of, steps_of
 from faying.typing import Array, Mask
 
 Part = tuple[Array, Mask]

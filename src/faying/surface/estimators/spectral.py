@@ -9,9 +9,9 @@ import numpy as np
 from faying.errors import FayingError, NotConverged
 from faying.surface.estimators.base import Estimate, Limits, white_rms, with_intervals
 from faying.surface.form import Prepared
+from faying.surface.heights import AreaHeights, LineHeights
 from faying.surface.lines import find_lines
 from faying.surface.powerlaw import FittedPowerLaw, fit_band, smearing, supported_band
-from faying.surface.scan import Profile, Scan
 from faying.surface.spectrum import Spectrum, binned, periodogram, white_shape
 from faying.typing import Array
 
@@ -26,10 +26,10 @@ def spectral_fit(ready: Prepared, limits: Limits) -> tuple[Spectrum, FittedPower
     return s, law, notes + more
 
 
-def clean_spectrum(scan: Scan | Profile) -> tuple[Spectrum, tuple[str, ...]]:
+def clean_spectrum(scan: AreaHeights | LineHeights) -> tuple[Spectrum, tuple[str, ...]]:
     """Return the spectrum without the sharp peaks of tool marks, and what was left out in words."""
     power, frequency, axes = periodogram(scan)
-    if isinstance(scan, Profile):
+    if isinstance(scan, LineHeights):
         return binned(scan, power, frequency, axes), ()
     marked = find_lines(scan, power, frequency)
     share = float(power[marked].sum() / power.sum())

@@ -9,7 +9,7 @@ from faying.surface.convention import structure_coefficient
 from faying.surface.estimators.base import Estimate, Estimator, Limits
 from faying.surface.estimators.scaling import cut_log, inside, side_of, size_band, straight, through_parts
 from faying.surface.form import Prepared
-from faying.surface.scan import Profile, Scan
+from faying.surface.heights import AreaHeights, LineHeights
 from faying.surface.spectrum import structure_function
 from faying.typing import Array, Mask
 
@@ -23,8 +23,10 @@ def estimate(ready: Prepared, limits: Limits, c: float) -> Estimate:
     from scipy.optimize import least_squares
 
     def local(z: Array, known: Mask, steps: tuple[float, ...], low: float, high: float) -> tuple[float, float]:
-        part: Scan | Profile = (
-            Profile(heights=z, spacing=steps[0]) if z.ndim == 1 else Scan(heights=z, spacing=(steps[1], steps[0]))
+        part: AreaHeights | LineHeights = (
+            LineHeights(heights=z, spacing=steps[0])
+            if z.ndim == 1
+            else AreaHeights(heights=z, spacing=(steps[1], steps[0]))
         )
         sf = structure_function(part, known=known, longest=min(0.5, high / side_of(z, steps)))
         use = (sf.lag >= low) & (sf.lag <= high) & (sf.value > 0)

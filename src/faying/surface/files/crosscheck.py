@@ -14,7 +14,8 @@ from typing import Any, final
 import numpy as np
 
 from faying.errors import InputError
-from faying.surface.scan import Profile, Scan, steps_of
+from faying.surface.heights import steps_of
+from faying.surface.scan import Profile, Scan
 
 # each prints points (ny, nx), spacing (dx, dy) [m] and the standard deviation of the heights as read [m]
 _TAIL = """

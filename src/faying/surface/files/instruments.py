@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from faying.errors import FayingError, InputError, ReadError
-from faying.surface.scan import Instrument, Profile, Scan, check_points
+from faying.surface.heights import Instrument, check_points
+from faying.surface.scan import Profile, Scan
 from faying.text import few
 from faying.units import scale
 

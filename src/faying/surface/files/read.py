@@ -11,7 +11,8 @@ from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
 from faying.files import end_of
 from faying.surface.files.text import TextLayout
-from faying.surface.scan import Profile, Scan, sides_of, steps_of
+from faying.surface.heights import sides_of, steps_of
+from faying.surface.scan import Profile, Scan
 from faying.units import scale
 
 ASK = 'for example read_scan("{name}", xy_unit="mm", z_unit="um"), or on the command line --xy-unit mm --z-unit um'

@@ -11,7 +11,8 @@ from faying.columns import line_count, table_in_one_go
 from faying.errors import ReadError
 from faying.files import refuse_decimal_comma
 from faying.heading import split_heading
-from faying.surface.scan import BYTES, Profile, Scan, check_points
+from faying.surface.heights import BYTES, check_points
+from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 from faying.units import scale
 

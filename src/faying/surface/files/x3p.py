@@ -17,7 +17,8 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from faying.errors import InputError, ReadError, shown
-from faying.surface.scan import Instrument, Profile, Scan, check_points
+from faying.surface.heights import Instrument, check_points
+from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 
 if TYPE_CHECKING:

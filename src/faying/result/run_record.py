@@ -1,0 +1,428 @@
+"""What a run has found: frozen arrays with names, dimensions and units, and the facts that they belong to."""
+
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from faying.errors import ReadError
+from faying.files import write_text
+from faying.joint.attachments import PointMass, Support
+from faying.joint.preload_case import preload_index
+from faying.measured.compare import ModalComparison
+from faying.measured.model import FullResponse, ModelModes
+from faying.misuse import checked_call
+from faying.notes import Note, grouped
+from faying.result.backbone import Backbone
+from faying.result.bolts import BoltNumbers
+from faying.result.fields import Recorded, in_units, load_texts, optional, variable
+from faying.result.interval import Interval
+from faying.result.provenance import Provenance
+from faying.text import csv_text, listed
+from faying.typing import Array, Complex, Index
+
+Point = tuple[float, float, float]
+MOST_LOADS, MOST_MODES = 4, 5  # that a summary has a column and a line for
+MAPS = ("point", "node", "triangle", "mode_other")  # dimensions of what only a file holds, not the JSON
+
+
+def preload_slope(values: Array, loads: Array) -> Array:
+    """Change with preload [value/N] (mode,) of values (load, mode), by a straight line; NaN for a single load."""
+    if len(loads) < 2:
+        return np.full(values.shape[1], np.nan)
+    about = loads - loads.mean()
+    return np.asarray(about @ values / (about @ about))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeasuredComparison:
+    """Listed frequencies of a hammer test beside the study's, and the mode (from 0) that each was paired with."""
+
+    source: str
+    frequencies: Array = variable("load test_mode", "Hz", "measured frequencies")
+    predicted: Array = variable("load test_mode", "Hz", "frequencies of the paired modes", gaps=True)
+    modes: Index = variable("load test_mode", "1", "index of the paired mode, -1: none", dtype="i8")
+    published: Array | None = optional("load test_mode", "Hz", "frequencies of a published model")
+    published_name: str = "published"
+    alternatives: Array | None = optional(
+        "law load test_mode", "Hz", "frequencies under another law", "predicted_by_law", gaps=True
+    )
+    kind: str = "test"  # or "model", where the frequencies are those of somebody's model
+
+    @property
+    def reference(self) -> str:
+        """What tables and figures call the frequencies that ours are set beside."""
+        return "test" if self.kind == "test" else "reference model"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Receptance:
+    """Frequency response at every load; error: the largest of the residuals that were checked [-]."""
+
+    frequencies: Array = variable("response_frequency", "Hz", "frequencies of the response")
+    values: Complex = variable("load response_frequency output input", "m/N", "receptance", dtype="c16")
+    input_points: Array = variable("input axis", "m", "points of the forces")
+    input_directions: Array = variable("input axis", "1", "directions of the forces")
+    output_points: Array = variable("output axis", "m", "points of the motion")
+    output_directions: Array = variable("output axis", "1", "directions of the motion")
+    error: Array = variable("load", "1", "largest residual of the full equations that was checked")
+    bolt_forces: Complex | None = optional(
+        "load response_frequency bolt input",
+        "1",
+        "force in each bolt per force, 0 for a bolt without a shank",
+        dtype="c16",
+    )
+
+    @property
+    def inputs(self) -> tuple[tuple[Point, Point], ...]:
+        """Point [m] and direction of each force."""
+        return _pairs(self.input_points, self.input_directions)
+
+    @property
+    def outputs(self) -> tuple[tuple[Point, Point], ...]:
+        """Point [m] and direction of each motion."""
+        return _pairs(self.output_points, self.output_directions)
+
+
+def _pairs(points: Array, directions: Array) -> tuple[tuple[Point, Point], ...]:
+    return tuple((tuple(p), tuple(d)) for p, d in zip(points.tolist(), directions.tolist(), strict=True))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class RunRecord(Recorded):
+    """The fields of `Result`, which says what they are."""
+
+    KIND: ClassVar[str] = "result"
+    COMMAND: ClassVar[str] = "faying run STUDY.toml"
+
+    title: str
+    loads: Array = variable("load", "N", "preload of the first bolt", "preload", before="load")
+    frequencies: Array = variable("load mode", "Hz", "frequency", "modes/frequency")
+    loss_factors: Array = variable(
+        "load mode", "1", "loss factor, NaN where no joint predicts one", "modes/loss_factor", gaps=True
+    )
+    loss_error: Array = variable(
+        "load mode", "1", "estimated relative error of the loss factor", "modes/loss_factor_error"
+    )
+    free: Array = variable("mode", "Hz", "frequency with the faces apart", "modes/")
+    bonded: Array = variable("mode", "Hz", "frequency with the faces bonded", "modes/")
+    rigid: Array = variable("rigid_motion", "Hz", "largest frequency of each rigid motion, ideally 0", "modes/")
+    mac: Array = variable(
+        "load mode mode_other", "1", "MAC by mass of the modes at the first load with those at each", "modes/"
+    )
+    points: Array = variable("point axis", "m", "points of the joints", "points/position")
+    weights: Array = variable("point", "m2", "area of each point", "points/area")
+    joint_of_point: Index = variable("point", "1", "joint of each point, from 0", "points/joint_number", dtype="i8")
+    pressure: Array = variable("load point", "Pa", "contact pressure", "points/")
+    k_n: Array = variable("load point", "Pa/m", "normal stiffness per area, as assembled", "points/")
+    k_t: Array = variable("load point", "Pa/m", "tangential stiffness per area, as assembled", "points/")
+    slipping: Array = variable("load joint", "1", "share of the area at the limit of friction", "joints/slipping_share")
+    total_k_n: Array = variable("load joint", "N/m", "sum of the normal springs", "joints/k_n")
+    total_k_t: Array = variable("load joint", "N/m", "sum of the tangential springs", "joints/k_t")
+    bolt_forces: Array = variable("load bolt", "N", "force left when all bolts are tight", "bolts/force")
+    imbalance: Array = variable("load", "1", "residual force of the preload over the load", "solution/")
+    newton_steps: Index = variable("load", "1", "Newton steps of the preload", "solution/", dtype="i8")
+    outline: Array = variable("node axis", "m", "nodes of the outer surface", "surface/position")
+    triangles: Index = variable("triangle corner", "1", "triangles between them", "surface/", dtype="i8")
+    shapes: Any = variable("load mode node axis", "kg^-1/2", "mass-normalised mode shapes", "surface/shape", dtype="f4")
+    shapes_imaginary: Any = optional(
+        "load mode node axis",
+        "kg^-1/2",
+        "imaginary part of the complex mode shapes, scaled as shapes: the motion is the real part of "
+        "(shapes + i shapes_imaginary) exp(i phase)",
+        "surface/shape_imaginary",
+        dtype="f4",
+    )
+    part_of_triangle: Index | None = optional("triangle", "1", "part of each triangle, from 0", "surface/", dtype="i8")
+    face_of_triangle: Index | None = optional(
+        "triangle", "1", "named face of each triangle, from 0, -1: none", "surface/", dtype="i8"
+    )
+    part_masses: Array | None = optional(
+        "part", "kg", "mass of each part, without bolts and point masses", "parts/mass"
+    )
+    slip: Array | None = optional(
+        "load point", "m", "tangential displacement of the second face against the first under the preload", "points/"
+    )
+    gap: Array | None = optional("point", "m", "distance of the faces before any load, form included", "points/")
+    bolt_seats: Array | None = optional(
+        "bolt end axis", "m", "where the axis of each bolt meets its seats", "bolts/seat"
+    )
+    bolt_diameters: Array | None = optional(
+        "bolt", "m", "diameter of each shank, NaN where none is given", "bolts/diameter", gaps=True
+    )
+    bolt_extents: Array | None = optional(
+        "bolt edge",
+        "m",
+        "inner and outer diameter of the seat of each bolt, NaN for a bolt that is a part",
+        "bolts/seat_diameter",
+        gaps=True,
+    )
+    dowel_ends: Array | None = optional("dowel end axis", "m", "where each dowel begins and ends", "dowels/ends")
+    dowel_diameters: Array | None = optional("dowel", "m", "diameter of each dowel", "dowels/diameter")
+    dowel_shear: Array | None = optional(
+        "load dowel", "N", "greatest shear force of the dowel when all bolts are tight", "dowels/shear"
+    )
+    outside_share: Array = variable(
+        "load", "1", "share of the joints' stiffness where their law is outside its validity range", "joints/"
+    )
+    above_range_share: Array = variable(
+        "load", "1", "share of the joints above the end of their law", "joints/above_range_share"
+    )
+    low: Array | None = optional(
+        "load mode", "Hz", "frequency at the lower end of the laws' range", "modes/frequency_low"
+    )
+    high: Array | None = optional(
+        "load mode", "Hz", "frequency at the upper end of the laws' range", "modes/frequency_high"
+    )
+    interval_low: Array | None = optional("load mode", "Hz", "5 % of the frequency, of all that is not known", "modes/")
+    interval_high: Array | None = optional(
+        "load mode", "Hz", "95 % of the frequency, of all that is not known", "modes/"
+    )
+    interval_offsets: Array | None = optional(
+        "source end load mode", "1", "change of ln f at 5 and at 95 % of one thing that is not known", "modes/"
+    )
+    mesh_error: Array | None = optional(
+        "load mode", "1", "estimated relative error of the frequency by the mesh", "modes/"
+    )
+    levels: Array | None = optional(
+        "level", "m/s2", "peak acceleration of the point that moves most", "modes/level_acceleration"
+    )
+    level_frequencies: Array | None = optional("load level mode", "Hz", "frequency at a level", "modes/")
+    level_damping: Array | None = optional("load level mode", "1", "damping ratio at a level", "modes/")
+    level_low: Array | None = optional("load level mode", "1", "lower end of damping at a level", "modes/")
+    level_high: Array | None = optional("load level mode", "1", "upper end of damping at a level", "modes/")
+    level_slip: Array | None = optional("load level mode", "1", "damping by slip at a level", "modes/")
+    level_error: Array | None = optional("load level mode", "1", "error of damping by slip", "modes/")
+    above_range_frequencies: Array | None = optional(
+        "load mode", "Hz", "frequency with what is above the law's end bonded", "modes/frequency_bonded_above"
+    )
+    above_range_loss_factors: Array | None = optional(
+        "load mode",
+        "1",
+        "loss factor with what is above the law's end bonded",
+        "modes/loss_factor_bonded_above",
+        gaps=True,
+    )
+    wave_seeds: Index | None = optional(
+        "draw", "1", "draws of waves on the faces, by their seed", "waves/seed", dtype="i8"
+    )
+    wave_frequencies: Array | None = optional(
+        "draw load mode", "Hz", "frequency with waves on the faces", "waves/frequency"
+    )
+    wave_slopes: Array | None = optional(
+        "draw mode", "Hz/N", "change of frequency with preload with waves", "waves/slope"
+    )
+    wave_rms: Array | None = optional(
+        "joint", "m", "rms of the waves of each face, NaN where none are drawn", "waves/rms", gaps=True
+    )
+    wave_lengths: Array | None = optional(
+        "joint end", "m", "shortest and longest wave that is drawn, NaN where none are", "waves/wave_length", gaps=True
+    )
+    alternative_frequencies: Array | None = optional(
+        "law load mode", "Hz", "frequency under another law", "laws/frequency", gaps=True
+    )
+    alternative_loss_factors: Array | None = optional(
+        "law load mode", "1", "loss factor under another law", "laws/loss_factor", gaps=True
+    )
+    alternative_above_range_frequencies: Array | None = optional(
+        "law load mode",
+        "Hz",
+        "frequency under another law with what is above its end bonded",
+        "laws/frequency_bonded_above",
+        gaps=True,
+    )
+    alternative_outside_share: Array | None = optional(
+        "law load",
+        "1",
+        "share of the joints' stiffness where another law is outside its validity range",
+        "laws/outside_share",
+        gaps=True,
+    )
+    alternative_above_range_share: Array | None = optional(
+        "law load", "1", "share of the joints above the end of another law", "laws/above_range_share", gaps=True
+    )
+    alternative_reach: Array | None = optional(
+        "law", "Pa", "pressure at which another law ends", "laws/end_pressure", gaps=True
+    )
+    thermal_conductance: Array | None = optional(
+        "load joint", "W/K", "conductance of heat, clean metal in vacuum", "joints/", gaps=True
+    )
+    electrical_conductance: Array | None = optional(
+        "load joint", "S", "conductance of current, clean metal", "joints/", gaps=True
+    )
+    interval_sources: tuple[str, ...] = ()
+    alternatives: tuple[str, ...] = ()
+    joints: tuple[str, ...]
+    bolts: tuple[str, ...]
+    dowels: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
+    faces: tuple[str, ...] = ()
+    joint_faces: tuple[tuple[str, str], ...] = ()
+    supports: tuple[Support, ...] = ()
+    masses: tuple[PointMass, ...] = ()
+    unknowns: int
+    solver: str
+    factor_memory: float = 0.0
+    damping: str = "hysteretic"
+    tightening: tuple[str, ...] = ()
+    surfaces: tuple[dict[str, Any], ...] = ()
+    laws: tuple[dict[str, Any], ...] = ()
+    sources: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+    response: Receptance | None = None
+    comparison: MeasuredComparison | None = None
+    hammer: ModalComparison | None = None
+    bolt_numbers: BoltNumbers | None = None
+    backbones: tuple[Backbone, ...] = ()
+    provenance: Provenance = field(default_factory=Provenance)
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, and what the result says, with the first modes."""
+        head = (
+            f"Result {self.title!r}: {self.unknowns:,} unknowns, {len(self.free)} modes at {len(self.loads)} preloads"
+        )
+        laws = dict.fromkeys(str(law.get("law", law.get("name", ""))) for law in self.laws)
+        rows = {"joints": listed(self.joints) + (f" ({listed(filter(None, laws))})" if any(laws) else "")}
+        rows["bolts"] = listed(self.bolts)
+        rows |= {"dowels": listed(self.dowels)} if self.dowels else {}
+        few = list(range(len(self.loads))) if len(self.loads) <= MOST_LOADS else [0, len(self.loads) // 2, -1]
+        words = load_texts(self.loads)
+        rows["frequencies"] = f"[Hz] free | {' | '.join(words[k] for k in few)} | bonded"
+        shown = len(self.free) if len(self.free) <= MOST_MODES else MOST_MODES - 1
+        for mode in range(shown):
+            cells = (self.free[mode], *(self.frequencies[k, mode] for k in few), self.bonded[mode])
+            rows[f"mode {mode + 1}"] = " | ".join(f"{value:8.2f}" for value in cells)
+        if len(self.free) > shown:
+            rows["more modes"] = f"{len(self.free) - shown}, up to {self.frequencies[-1, -1]:.2f} Hz"
+        if self.comparison is not None:
+            c = self.comparison
+            error = np.abs(c.predicted / c.frequencies - 1)
+            paired = np.isfinite(error)
+            mean = f", mean deviation {np.mean(error[paired]):.2%}" if paired.any() else ""
+            rows[c.reference] = f"{paired.sum()} of {paired.size} frequencies paired{mean}"
+        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The notes as sentences, those that differ in load and share alone as one; see `faying.notes.grouped`."""
+        return tuple(note.text for note in grouped(self.notes))
+
+    def open_share(self) -> Array:
+        """Share of the joints' area that carries nothing [-] (l,)."""
+        return np.asarray((self.pressure <= 0) @ self.weights / self.weights.sum())
+
+    def response_at(self, load: int) -> FullResponse | None:
+        """The frequency response at one load (its index) as a comparison with a test takes it."""
+        r = self.response
+        if r is None:
+            return None
+        return FullResponse(
+            frequency=r.frequencies,
+            receptance=r.values[load].transpose(1, 2, 0),
+            outputs=(r.output_points, r.output_directions),
+            inputs=(r.input_points, r.input_directions),
+        )
+
+    @checked_call
+    def refuse_strays(self) -> None:
+        """Raise ReadError where triangles name nodes, parts or faces that there are not, as in a damaged file."""
+        for name, indices, count in (
+            ("triangles", self.triangles, len(self.outline)),
+            ("part_of_triangle", self.part_of_triangle, np.inf),
+            ("face_of_triangle", self.face_of_triangle, np.inf),
+        ):
+            if indices is not None and indices.size and not (indices.min() >= -1 and indices.max() < count):
+                raise ReadError(
+                    f"its {name} run from {indices.min()} to {indices.max()}, past the end of those in the file"
+                )
+
+    @checked_call
+    def modes_at(self, load: float | str | None = None, source: str = "this study") -> ModelModes:
+        """The modes at a preload [N], by default the greatest, for a comparison with a test.
+
+        Raises InputError where there is no such load.
+        """
+        index = preload_index(self.loads, load, name="load", of=source)
+        return ModelModes(
+            frequencies=self.frequencies[index],
+            loss_factors=self.loss_factors[index],
+            shapes=self.shapes[index].astype(float),
+            points=self.outline,
+            triangles=self.triangles,
+            load=float(self.loads[index]),
+            title=self.title,
+            source=source,
+            full=self.response_at(index),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps and shapes are left out."""
+        out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver}
+        out["factor_memory"] = {"unit": "B", "values": self.factor_memory}
+        out |= in_units(self, without=MAPS)
+        out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
+        out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
+        out["interval_sources"], out["alternatives"] = list(self.interval_sources), list(self.alternatives)
+        out["parts"] = list(self.parts)
+        out["dowels"] = list(self.dowels)
+        out |= {"joints": list(self.joints), "bolts": list(self.bolts), "tightening": list(self.tightening)}
+        out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
+        if self.comparison is not None:
+            c = self.comparison
+            facts = {"source": c.source, "published_name": c.published_name, "kind": c.kind}
+            out["comparison"] = facts | in_units(c)
+        if self.bolt_numbers is not None:
+            out["bolt_numbers"] = in_units(self.bolt_numbers)
+        if self.hammer is not None:
+            out["hammer_test"] = self.hammer.to_dict()
+        if self.backbones:
+            out["backbones"] = [curve.to_dict() for curve in self.backbones]
+        out["sources"] = list(self.sources)
+        out["notes"] = [asdict(note) for note in self.notes]
+        return out
+
+    def labels(self) -> dict[str, Any]:
+        """Labels of the dimensions of its arrays, by the name of the dimension."""
+        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, len(self.free) + 1)}
+        out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
+        out |= {"part": self.parts} if self.parts else {}
+        out |= {"dowel": self.dowels} if self.dowels else {}
+        out |= {"source": self.interval_sources} if self.interval_sources else {}
+        return out | ({"law": self.alternatives} if self.alternatives else {})
+
+    @property
+    def interval(self) -> Interval | None:
+        """What makes the interval of each frequency; None in a result without one."""
+        if self.interval_offsets is None:
+            return None
+        return Interval(sources=self.interval_sources, offsets=self.interval_offsets)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
+        return write_text(Path(path), self.csv_text())
+
+    def csv_text(self) -> str:
+        """Return the rows of to_csv as text."""
+        columns = [
+            ("frequency", self.frequencies),
+            ("loss factor", self.loss_factors),
+            ("free", np.broadcast_to(self.free, self.frequencies.shape)),
+            ("bonded", np.broadcast_to(self.bonded, self.frequencies.shape)),
+            *(("low", self.low), ("high", self.high)),
+            *(("5 %", self.interval_low), ("95 %", self.interval_high)),
+        ]
+        kept = [(name, values) for name, values in columns if values is not None]
+        heads = [f"{name} [{'-' if name == 'loss factor' else 'Hz'}]" for name, _ in kept]
+        if self.mesh_error is not None:
+            heads, kept = [*heads, "error of the mesh [-]"], [*kept, ("", self.mesh_error)]
+        if self.levels is not None and self.level_damping is not None:
+            at = [(level, self.level_damping[:, k]) for k, level in enumerate(self.levels)]
+            heads += [f"damping ratio at {level:g} m/s2 [-]" for level, _ in at]
+            kept += [("", values) for _, values in at]
+        rows: list[list[Any]] = [["preload [N]", "mode", *heads]]
+        for i, load in enumerate(self.loads):
+            for j in range(len(self.bonded)):
+                row = [float(values[i, j]) for _, values in kept]
+                rows.append([f"{load:.6g}", j + 1, *("" if np.isnan(v) else f"{v:.8g}" for v in row)])
+        return csv_text(rows)
