@@ -10,10 +10,16 @@ from faying.study import Study
 from tests.helpers.figures import hammer, measured_points
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
+BLOCKS = EXAMPLES / "two-blocks"
 
 
 def uff():
     return faying.read_uff(EXAMPLES / "hammer-test" / "blocks.uff")
+
+
+def attached():
+    study = BLOCKS / "study.toml"
+    return faying.attach(BLOCKS / "model.inp", ("FACE_A", "FACE_B"), unit="mm", study=study, pressure="5 MPa")
 
 
 def places():
@@ -30,6 +36,8 @@ MADE = {
     "MeasuredBackbone": (measured_points, ("m/s2", "%")),
     "GapMap": (lambda: faying.GapMap(places=places(), gaps=1e-6 * np.arange(45.0)), ("40 x 20 mm", "0 to 44 um")),
     "FaceMap": (lambda: faying.FaceMap(places=places(), heights=1e-6 * np.arange(45.0)), ("45 points",)),
+    "GeometryFacts": (lambda: faying.faces(BLOCKS / "model.inp", unit="mm"), ("2 parts", "faces,")),
+    "Attachment": (lambda: attached(), ("pairs", "N/m")),
     "Study": (lambda: Study.read(EXAMPLES / "hammer-test" / "study.toml"), ("upper (45 steel)", "2, 6 kN", "test")),
 }
 

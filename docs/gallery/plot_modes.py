@@ -5,11 +5,9 @@ Modes that move
 Two blocks pressed together, and the viewer of ``report.html`` with their modes.
 """
 
-from base64 import b64encode
 from pathlib import Path
 
 import faying
-from faying.output import scene
 
 study = next(
     path / "examples" / "two-blocks" / "study.toml"
@@ -22,19 +20,7 @@ result = faying.run(study)
 # A page of one file that asks for nothing: drag to turn, choose a mode and a preload, colour by motion or pressure.
 # ``faying view`` writes the same page.
 
-page = scene.page(scene.of_result(result))
-
-
-class Viewer:
-    """Shows a page within this one."""
-
-    def _repr_html_(self):
-        data = b64encode(page.encode()).decode("ascii")
-        shape = "width:100%;height:640px;border:0"
-        return f'<iframe src="data:text/html;base64,{data}" style="{shape}" title="modes"></iframe>'
-
-
-Viewer()
+faying.view(result)
 
 # %%
 # The first mode bends across the joint: its frequency rises with the preload, which stiffens the joint.

@@ -26,6 +26,10 @@ from .errors import InputError as InputError
 from .errors import NotConverged as NotConverged
 from .errors import ReadError as ReadError
 from .export.attach import attach as attach
+from .export.bare import modes_with_joint as modes_with_joint
+from .export.condense import condense as condense
+from .export.matrix_modes import MatrixModes as MatrixModes
+from .export.matrix_modes import matrix_modes as matrix_modes
 from .fe.mesh import Mesh as Mesh
 from .form.fit import fit_form as fit_form
 from .form.flatness import minimum_zone as minimum_zone
@@ -61,6 +65,7 @@ from .measured.ring_down import ring_down as ring_down
 from .measured.ring_down import ring_down_of_frf as ring_down_of_frf
 from .measured.uff import read_uff as read_uff
 from .measured.uff_write import write_uff as write_uff
+from .output.report import write_report as write_report
 from .output.scene.notebook import view as view
 from .result import Result as Result
 from .result import read_model_modes as read_model_modes
@@ -68,6 +73,9 @@ from .result.backbone import Backbone as Backbone
 from .result.difference import RunDifference as RunDifference
 from .result.difference import compare_runs as compare_runs
 from .result.load_cases import LoadCases as LoadCases
+from .setup.check import check as check
+from .setup.faces import faces as faces
+from .setup.new import new_study as new_study
 from .study import Study as Study
 from .surface import synthesize as synthesize
 from .surface.combine import Combined as Combined

@@ -122,7 +122,7 @@ def test_pressure_from_our_preload(tmp_path):
     found = attached(tmp_path, "solve", preload="3 kN")
     assert found.pairs.area @ found.pairs.pressure == pytest.approx(3000, rel=1e-8)
     assert "bolts at 3 kN" in " ".join(found.deck.facts)
-    with pytest.raises(faying.InputError, match="the study has the preloads 1 kN, 3 kN; say which with --preload"):
+    with pytest.raises(faying.InputError, match="the study has the preloads 1 kN, 3 kN; say which by preload"):
         attached(tmp_path, "solve")
     with pytest.raises(faying.InputError, match="preload = 2 kN: the study has no such preload; it has 1 kN, 3 kN"):
         attached(tmp_path, "solve", preload="2 kN")
@@ -308,9 +308,7 @@ def test_faults_of_models(tmp_path):
 def test_faults_of_studies(tmp_path):
     other = TEXT.replace('faces = ["p0.right", "p1.left"]', 'faces = ["x", "y"]')
     two_joints = other + '[[joint]]\nname = "second"\nfaces = ["u", "v"]\n'
-    fault(
-        tmp_path, "the study has the joints 'joint', 'second'; choose whose law to take with --joint", text=two_joints
-    )
+    fault(tmp_path, "the study has the joints 'joint', 'second'; choose whose law to take by joint", text=two_joints)
     assert attached(tmp_path, text=two_joints, joint="second").pairs.lumped
     assert attached(tmp_path, text=other).pairs.lumped
     materials = TEXT.replace('[part.p1]\nmaterial = "45 steel"', '[part.roof]\nmaterial = "brass"')
@@ -354,7 +352,7 @@ def test_nothing_is_written_after_a_fault(tmp_path, capsys):
     for words, text in (
         (("--pressure", "5 MPa"), "nothing to do: name a solver with --to"),
         (("--pressure", "5 bananas", "--to", "mapdl"), "--pressure"),
-        (("--pressure", "5 MPa", "--to", "mapdl", "--frequency", "0 Hz"), "must be above 0"),
+        (("--pressure", "5 MPa", "--to", "mapdl", "--frequency", "0 Hz"), 'frequency = "0 Hz"; it must be positive'),
         (("--pressure", "5 MPa", "--to", "mapdl", "--out", str(file)), "cannot make the folder"),
     ):
         code, _, err = invoke(capsys, *common(file), *words)

@@ -70,7 +70,7 @@ def looked(folder, *changes):
         text = text.replace(old, other)
     path = folder / "changed.toml"
     path.write_text(text)
-    return check(path), text.splitlines()
+    return check(path, mesh=False), text.splitlines()
 
 
 def test_a_sound_study(folder):
@@ -140,10 +140,10 @@ def test_gaps_overlaps_and_odd_bolts(tmp_path):
     text = text.replace('"upper.joint" = { part = "upper", touching = "lower" }', "").replace('snap = "210 um"', "")
     text = text.replace('"lower.joint", "upper.joint"', '{part="lower", normal="+z"}, {part="upper", normal="-z"}')
     (tmp_path / "s.toml").write_text(text)
-    gap = next(one for one in check(tmp_path / "s.toml").findings if one.code == "gap")
+    gap = next(one for one in check(tmp_path / "s.toml", mesh=False).findings if one.code == "gap")
     assert "a gap of 200 um between its faces about (50, 20, 10) mm" in gap.text
     lapped(tmp_path / "gap.step", gap=-0.2, names=("lower", "upper"))
-    overlap = next(one for one in check(tmp_path / "s.toml").faults if one.code == "overlap")
+    overlap = next(one for one in check(tmp_path / "s.toml", mesh=False).faults if one.code == "overlap")
     assert "share 100 x 40 x 0.2 mm" in overlap.text
 
 
@@ -154,7 +154,7 @@ def test_a_joint_or_a_bolt_twice_is_a_fault(tmp_path):
     joint = '[[joint]]\nname = "k"\nfaces = ["lower.joint", "upper.joint"]\n'
     bolt = '[[bolt]]\nname = "c"\nfaces = ["upper.seat", "lower.seat"]\npreload = ["2 kN", "6 kN"]\n'
     (tmp_path / "s.toml").write_text(text + joint + bolt)
-    told = " ".join(one.text for one in check(tmp_path / "s.toml").faults)
+    told = " ".join(one.text for one in check(tmp_path / "s.toml", mesh=False).faults)
     assert "joints 'joint' and 'k' join the same faces" in told
     assert "bolts 'bolt' and 'c' run through one place" in told
 
@@ -199,7 +199,7 @@ def with_points(folder, tables, place):
 
 def test_points_on_the_structure(tmp_path):
     study = with_points(tmp_path, TABLES, '"40 mm", "15 mm", "-15 mm"')
-    assert [one.text for one in check(study).faults] == []
+    assert [one.text for one in check(study, mesh=False).faults] == []
     Case.of(Study.read(study))
 
 
@@ -210,7 +210,7 @@ def test_points_on_the_structure(tmp_path):
 def test_points_far_from_the_structure(tmp_path, table, place):
     """In the words of `faying run`, which meshes first; check has no nodes and measures from the faces."""
     path = with_points(tmp_path, [table], place)
-    told = [one.text for one in check(path).faults]
+    told = [one.text for one in check(path, mesh=False).faults]
     with pytest.raises(faying.InputError) as fault:
         Case.of(Study.read(path))
     before, said, after = r"(?P<a>.*nearest node to )", told[0], r" mm away; (?P<b>.*)"
@@ -260,7 +260,7 @@ def test_the_pressure_of_a_cone_carries_the_force():
 @pytest.mark.parametrize(("name", "run"), [("sheets", 135), ("plates", 73), ("flanges", 64)])
 def test_the_pressure_at_a_hole_is_near_that_of_a_run(name, run):
     """An estimate before the mesh, by a cone and a straight line: within a quarter, as stated."""
-    found = check(Path(__file__).parents[2] / "examples" / "plates-and-bolts" / f"{name}.toml")
+    found = check(Path(__file__).parents[2] / "examples" / "plates-and-bolts" / f"{name}.toml", mesh=False)
     assert not found.faults
     said = next(one.text for one in found.findings if one.code == "pressure")
     estimate = float(said.split(" at its hole")[0].split()[-2])
@@ -342,7 +342,7 @@ def test_a_ready_mesh_is_checked_for_its_elements(tmp_path):
     mesh = row((0.06, 0.04), (6, 4), kinds=("tet4", "tet4"), width=0.02, height=0.02, sections=((3, 3), (3, 3)))
     (tmp_path / "model.inp").write_text(abaqus(mesh))
     (tmp_path / "s.toml").write_text(STUDY.replace("[modes]", '[law]\nmodel = "jk"\n[modes]'))
-    found = check(tmp_path / "s.toml")
+    found = check(tmp_path / "s.toml", mesh=False)
     assert not found.faults
     assert any(one.code == "stiff-elements" for one in found.findings)
     assert found.expected.unknowns == mesh.unknowns
@@ -396,7 +396,7 @@ def test_a_meshed_bolt_whose_nut_is_in_no_joint_is_refused_as_by_the_run(tmp_pat
     text = (example / "study.toml").read_text()
     begin, end = text.index('[[joint]]\nname = "nut"'), text.index("[[bolt]]")
     (tmp_path / "study.toml").write_text(text[:begin] + text[end:])
-    faults = [one.text for one in check(tmp_path / "study.toml").faults]
+    faults = [one.text for one in check(tmp_path / "study.toml", mesh=False).faults]
     (fault,) = [text for text in faults if "in no joint" in text]
     assert fault.startswith("bolt 'M8': its face 'bolt.nut' is in no joint; add a [[joint]]")
     with pytest.raises(faying.InputError, match=re.escape(fault)):

@@ -5,7 +5,6 @@ from typing import Any
 
 import click
 
-from faying import units
 from faying.cli.options import PATH
 from faying.decks.programs import SOLVERS
 from faying.errors import InputError
@@ -80,8 +79,6 @@ def command(
     face_a: str,
     face_b: str,
     law: Path,
-    tolerance: str | None,
-    frequency: str | None,
     solver: str | None,
     out: Path | None,
     matrices: Path | None,
@@ -97,18 +94,12 @@ def command(
 
     MODEL: .inp of Abaqus or CalculiX, .bdf, .msh, .cdb.
     """
-    from faying.decks.write import write
     from faying.export.attach import attach
     from faying.export.bare import modes_with_joint
-    from faying.study import Study
 
     if solver is None and matrices is None:
         raise InputError(f"nothing to do: name a solver with --to ({', '.join(SOLVERS)}), or matrices with --matrices")
-    at = None if frequency is None else units.parse(frequency, "Hz", name="--frequency")
-    if at is not None and at <= 0:
-        raise InputError(f'--frequency "{frequency}" must be above 0')
-    reach = None if tolerance is None else units.parse(tolerance, "m", name="--tolerance")
-    made = attach(model, (face_a, face_b), study=Study.read(law), tolerance=reach, frequency=at, **options)
+    made = attach(model, (face_a, face_b), study=law, **options)
     document = made.to_dict()
     files: list[Path] = []
     lines = [*made.deck.facts, f"{len(made.pairs)} pairs of nodes"]
@@ -127,7 +118,7 @@ def command(
             for i, (f, eta) in enumerate(zip(found.frequencies, found.loss_factors, strict=True), 1)
         ]
     if solver is not None:
-        files = write(made.deck, solver, out or model.parent / "joint")
+        files = made.write(solver, out or model.parent / "joint")
         document["files"] = [str(file) for file in files]
     if as_json:
         click.echo(json_text(document))

@@ -50,7 +50,6 @@ def command(
     progress: Form | None,
 ) -> None:
     """Condense a joint of STUDY to a 6 x 6 stiffness between two points, with the error of that."""
-    from faying.decks.write import write_condensed
     from faying.export.condense import condense
     from faying.output.table import text
     from faying.study import Study
@@ -63,8 +62,14 @@ def command(
         found = condense(plan, joint=joint, preload=preload, points=points, report=report)
     files: list[Path] = []
     if solver is not None:
-        deck = found.deck(unit=unit or "", force_unit=force_unit, nodes=(node_a, node_b), element=element)
-        files = write_condensed(deck, solver, out or plan.folder / "joint")
+        files = found.write(
+            solver,
+            out or plan.folder / "joint",
+            unit=unit or "",
+            force_unit=force_unit,
+            nodes=(node_a, node_b),
+            element=element,
+        )
     if as_json:
         click.echo(json_text(found.to_dict() | {"files": [str(f) for f in files]}))
         return

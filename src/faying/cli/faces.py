@@ -1,13 +1,11 @@
 """faying faces FILE"""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import click
 
 from faying.cli.options import PATH
-from faying.errors import InputError
 from faying.output.terminal import WIDTH, folded
 from faying.output.terminal import text as aligned
 from faying.text import json_text
@@ -22,76 +20,30 @@ WIDE = 18  # letters of a face's name in the table
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 def command(geometry: Path, part: str | None, unit: str | None, as_json: bool) -> None:
     """List the faces of GEOMETRY, a STEP or mesh file: number, kind, area, normal, centre, and where parts touch."""
+    from faying.setup.faces import faces
 
-    facts = read(geometry, unit)
-    if part is not None and part not in facts.by_part:
-        raise InputError(f"no part is called {part!r}; the parts are {', '.join(map(repr, facts.by_part))}")
-    click.echo(json_text(to_dict(facts, part)) if as_json else text(facts, part))
-
-
-def read(geometry: Path, unit: str | None) -> Any:
-    """The facts of a STEP file, or of the named faces of a mesh file."""
-    from faying.geometry.cad import STEP
-
-    if geometry.suffix.lower() in STEP:
-        from faying.geometry.face_facts import read_facts
-
-        if unit is not None:
-            raise InputError("--unit is for mesh files; a STEP file states its unit, so leave --unit out")
-        return read_facts(geometry)
-    from faying.decks.meshfile import read_mesh
-    from faying.geometry.mesh_facts import mesh_facts
-
-    return mesh_facts(read_mesh(geometry, unit=unit))
+    facts = faces(geometry, unit=unit)
+    if part is not None:
+        facts = facts.of_part(part)
+    click.echo(json_text(facts.to_dict()) if as_json else text(facts))
 
 
-def to_dict(facts: Any, part: str | None) -> dict[str, Any]:
-    """Parts, faces and contacts with the units of their numbers."""
-    keep = [face for face in facts.faces if part in (None, face.part)]
-    meets = [c for c in facts.contacts if part is None or part in (c.first[0], c.second[0])]
-    units = {
-        "area": "m^2",
-        "centre": "m",
-        "normal": "1",
-        "radius": "m",
-        "axis": "1",
-        "start": "m",
-        "length": "m",
-        "turn": "1",
-        "gap": "m",
-        "volume": "m^3",
-        "low": "m",
-        "high": "m",
-    }
-    return {
-        "file": facts.file,
-        "units": units,
-        "parts": [asdict(one) for one in facts.parts if part in (None, one.name)],
-        "faces": [asdict(face) for face in keep],
-        "contacts": [asdict(contact) for contact in meets],
-        "notes": [note.text for note in facts.notes],
-    }
-
-
-def text(facts: Any, part: str | None) -> str:
+def text(facts: Any) -> str:
     """One table for each part, and one of the faces that look at each other."""
     lines: list[str] = []
     for one in facts.parts:
-        if part not in (None, one.name):
-            continue
         faces = facts.by_part[one.name]
         size = " x ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(one.low, one.high, strict=True))
         lines += [f"{one.name}: {len(faces)} faces, {1e6 * one.volume:.4g} cm3, within {size} mm"]
         named = any(face.name for face in faces)
         head = ["no", *(["name"] if named else []), "kind", "area mm2", "normal", "centre mm", "r mm", "next to"]
         lines += [*_aligned([head, *(_row(face, named) for face in faces)]), ""]
-    meets = [c for c in facts.contacts if part is None or part in (c.first[0], c.second[0])]
-    if meets:
+    if facts.contacts:
         lines.append("faces that look at each other")
         rows = [["part", "no", "part", "no", "area mm2", "gap mm"]]
         rows += [
             [c.first[0], str(c.first[1]), c.second[0], str(c.second[1]), f"{1e6 * c.area:.4g}", f"{1e3 * c.gap:.3g}"]
-            for c in meets
+            for c in facts.contacts
         ]
         lines += [*_aligned(rows), ""]
     lines += [f"note: {note.text}" for note in facts.notes]

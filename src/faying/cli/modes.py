@@ -54,6 +54,7 @@ def command(
 ) -> None:
     """Real modes of STUDY at its first preload, or of assembled matrices."""
     from faying.export.assembled import Assembled
+    from faying.export.matrix_modes import modes_of
     from faying.study import Study
 
     if (study is None) == (stiffness is None):
@@ -71,7 +72,7 @@ def command(
         click.echo(f"shift {given.shift_frequency:.6g} Hz; written to {export}: {', '.join(f.name for f in files)}")
         return
     frequency = units.parse(shift, "Hz", name="--shift") if shift else given.shift_frequency
-    found = _here(given, count, frequency) if mpi is None else _over_mpi(given, count, frequency, mpi)
+    found = modes_of(given, count, frequency).to_dict() if mpi is None else _over_mpi(given, count, frequency, mpi)
     if as_json:
         click.echo(json_text(found))
         return
@@ -88,26 +89,6 @@ def command(
         click.echo(
             f"note: {found['missed']} modes below the last of these are missing; give another --shift, below the first"
         )
-
-
-def _here(given: Any, count: int, shift: float) -> dict[str, Any]:
-    from faying.decks.matrices import total_mass
-    from faying.numerics.memory import check_modes
-    from faying.numerics.modes import lowest_modes, missed_modes
-
-    check_modes(count, given.stiffness.shape[0])
-    modes = lowest_modes(given.stiffness, given.mass, count, shift_frequency=shift)
-    missed = missed_modes(given.stiffness, given.mass, modes)
-    return {
-        "source": given.source,
-        "unknowns": int(given.mass.shape[0]),
-        "solver": modes.factorisation.name,
-        "factor_memory": {"unit": "B", "value": modes.factorisation.memory},
-        "processes": 1,
-        "missed": missed,
-        "mass": {"unit": "kg", "values": total_mass(given.mass, given.dofs).tolist()},
-        "frequencies": {"unit": "Hz", "values": modes.frequencies.tolist()},
-    }
 
 
 def _over_mpi(given: Any, count: int, shift: float, processes: int) -> dict[str, Any]:

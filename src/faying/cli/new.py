@@ -33,7 +33,7 @@ def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: boo
     proposal = new.find(step, unit)
     answers = new.Answers(scan=scan) if silent else asked(proposal, scan)
     written = new.write(proposal, step, out, answers, force=force)
-    click.echo(json_text(to_dict(written)) if as_json else "\n".join(new.summary(written, out)))
+    click.echo(json_text(written.to_dict()) if as_json else "\n".join(new.summary(written, out)))
 
 
 def asked(proposal: Any, scan: Path | None) -> Any:
@@ -70,30 +70,3 @@ def asked(proposal: Any, scan: Path | None) -> Any:
         named = click.prompt("scan of one face (empty for a synthetic milled one)", default="", show_default=False)
         scan = Path(named) if named.strip() else None
     return new.Answers(materials=materials, preload=preload, scan=scan)
-
-
-def to_dict(written: Any) -> dict[str, Any]:
-    """What was found and written, in SI units."""
-    found = written.proposal
-    return {
-        "files": [str(file) for file in written.files],
-        "parts": [part.name for part in found.facts.parts],
-        "left_out": list(found.left_out),
-        "joints": [
-            {"name": j.name, "faces": list(j.faces), "area": {"unit": "m^2", "values": j.area}} for j in found.joints
-        ],
-        "bolts": [
-            {
-                "name": b.name,
-                "faces": list(b.faces),
-                "size": b.size and f"M{b.size}",
-                "part": b.part,
-                "preload": {"unit": "N", "values": b.preload},
-            }
-            for b in found.bolts
-        ],
-        "dowels": [{"name": d.name, "walls": list(d.walls)} for d in found.dowels],
-        "size": {"unit": "m", "values": found.size},
-        "unknowns": found.unknowns,
-        "assumed": list(written.assumed),
-    }

@@ -67,7 +67,7 @@ def command(
     folder = out or plan.results
     every = [*stages(plan), *([] if no_files else ["report"])]
     bar = Shown("study", progress, every)
-    with nullcontext() if no_files else together(folder, "give another with --out", [RESULT]) as hidden, bar:
+    with nullcontext() if no_files else together(folder, "give another with --out", [report.RESULT]) as hidden, bar:
         result = run(plan, report=lambda stage, done, _: bar(stage, done, len(every)), engine=engine, refine=refine)
         files = []
         if hidden is not None:
@@ -76,9 +76,6 @@ def command(
             files += universal.write(result, hidden) if uff else []
             files = [folder / file.name for file in files]
     show(as_json, result.to_dict, lambda: text(result), files, folder)
-
-
-RESULT = "result.nc"  # is kept where the report does not fit
 
 
 def text(result: Any) -> str:

@@ -39,7 +39,7 @@ def write_condensed(deck: CondensedDeck, solver: str, folder: Path) -> list[Path
 
 
 def _written(texts: dict[str, str], folder: Path) -> list[Path]:
-    with together(folder, "give another with --out") as hidden:
+    with together(folder, "give another (--out)") as hidden:
         for name, text in texts.items():
             write_text(hidden / name, text)
     return [folder / name for name in texts]

@@ -70,7 +70,7 @@ class Assembled:
         from scipy.sparse import csr_matrix
 
         out = []
-        with together(folder, "give another with --export") as hidden:
+        with together(folder, "give another (--export)") as hidden:
             for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
                 csr = csr_matrix(matrix)
                 arrays = {"format": b"csr", "shape": csr.shape}  # as scipy.sparse.save_npz has them

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
+from textwrap import shorten
 from typing import Any, Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from faying import units
 from faying.case.case import checked_mesh, joint_law, structure_of, surfaces_of
 from faying.decks.deck import ContactProperty, JointDeck
 from faying.decks.system import UnitSystem
+from faying.decks.write import write
 from faying.errors import InputError
 from faying.fe.faces import face_centre
 from faying.fe.interface import Interface, join
@@ -26,8 +28,10 @@ from faying.study.keys.geometry import GeometryChoice, mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.pressure import read_pressure
 from faying.study.study import Study
+from faying.style import Summary
 from faying.text import few
 from faying.typing import Array
+from faying.units import positive, show_area
 
 SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
 TOUCHING = 1e-6  # of the structure's size: a gap above it is noted
@@ -35,8 +39,8 @@ UNKNOWN_FRICTION = 0.2
 VALID = "validity: the law is within its validity range everywhere"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Attachment:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Attachment(Summary):
     """A joint on a model: its deck, the springs, their interface, area [m2], and what the user should know."""
 
     deck: JointDeck
@@ -48,6 +52,32 @@ class Attachment:
     def pairs(self) -> NodePairs:
         """The springs between nodes."""
         return self.deck.pairs
+
+    def write(self, program: str, folder: str | Path) -> list[Path]:
+        """Write the decks of the joint, and joint_pairs.csv.
+
+        Args:
+            program: "calculix", "abaqus", "nastran", "mapdl" or "aster".
+            folder: Where the files go; it is made where it does not exist.
+
+        Returns:
+            The files.
+
+        Raises:
+            InputError: Another program, nodes with directions of their own, or a folder that cannot be used.
+        """
+        return write(self.deck, program, Path(folder))
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return the faces, how many pairs of nodes, the sums of their stiffness, and notes."""
+        k_n, k_t = self.pairs.totals()
+        rows = {
+            "pairs": f"{len(self.pairs):,} of nodes",
+            "area": show_area(self.interface.area),
+            "stiffness": f"normal {k_n:.4g} N/m, tangential {k_t:.4g} N/m in all",
+        }
+        rows |= {f"note {k}": shorten(note, 100, placeholder=" ...") for k, note in enumerate(self.notes[:6], 1)}
+        return f"Joint between {' and '.join(self.deck.faces)}", rows
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the pairs themselves, in SI units."""
@@ -70,13 +100,13 @@ def attach(
     faces: tuple[str, str],
     *,
     unit: str,
-    study: Study,
+    study: Study | str | Path,
     pressure: str | Path,
     joint: str | None = None,
     preload: str | None = None,
-    tolerance: float | None = None,
+    tolerance: float | str | None = None,
     coupling: Literal["auto", "nodes", "faces"] = "auto",
-    frequency: float | None = None,
+    frequency: float | str | None = None,
     damping: Literal["loss", "paper"] = "loss",
     force_unit: str = "N",
     any_size: bool = False,
@@ -87,13 +117,13 @@ def attach(
         model: mesh file of Abaqus, CalculiX, Nastran, MAPDL, Gmsh or VTK.
         faces: the rough face and the one that it meets.
         unit: of the model's coordinates; no mesh file says.
-        study: gives surface, law and materials, and the bolts where they are solved.
+        study: the study or its file: gives surface, law and materials, and the bolts where they are solved.
         pressure: a value with unit, a CSV file of node and pressure, or "solve" for the study's bolts on this mesh.
         joint: which of the study's joints, by name; the one with these faces, or the only one, where None.
         preload: with "solve", which of the study's preloads, as text with a unit.
-        tolerance: how far apart the faces may lie [m].
+        tolerance: how far apart the faces may lie [m], or text with a unit.
         coupling: "nodes" (pair by pair), "faces" (springs per area, exact on any meshes) or what the meshes allow.
-        frequency: of viscous dampers that lose as much as the loss factor does [Hz].
+        frequency: of viscous dampers that lose as much as the loss factor does [Hz], or text with a unit.
         damping: "paper" for the JK paper's dampers.
         force_unit: unit of force of the model.
         any_size: take a joint of any area.
@@ -105,7 +135,9 @@ def attach(
         ReadError, InputError: files, faces that are missing, apart, turned the same way or of doubtful size, and
             pressures that do not cover the face.
     """
-    file = Path(model)
+    file, study = Path(model), Study.read(study)
+    search = None if tolerance is None else positive(tolerance, "m", "tolerance")
+    at_frequency = None if frequency is None else positive(frequency, "Hz", "frequency")
     spec = _joint(study, faces, joint)
     solving = str(pressure) == "solve"
     geometry = GeometryChoice(mesh=file, unit=unit, sets=study.geometry.sets)
@@ -113,12 +145,12 @@ def attach(
         moved = replace(
             study,
             geometry=geometry,
-            joints=tuple(replace(j, faces=faces, search_distance=tolerance) if j is spec else j for j in study.joints),
+            joints=tuple(replace(j, faces=faces, search_distance=search) if j is spec else j for j in study.joints),
         )
         mesh = checked_mesh(moved)
     else:
         mesh = mesh_of(geometry)
-    interface = _interface(mesh, faces, tolerance, any_size, unit)
+    interface = _interface(mesh, faces, search, any_size, unit)
     materials = _materials(study, mesh, faces)
     notes = [*(note.text for note in mesh.notes), *_apart(mesh, faces, interface)]
     if solving:
@@ -132,7 +164,7 @@ def attach(
             "the meshes of the faces do not match: springs per area, exact, between all nodes that share an overlap; "
             "some of them are negative"
         )
-    viscous = None if frequency is None else np.asarray(pairs.loss / (2 * np.pi * frequency))
+    viscous = None if at_frequency is None else np.asarray(pairs.loss / (2 * np.pi * at_frequency))
     if damping == "paper":
         viscous = _paper_dampers(pairs, mesh, materials)
     area = pairs.area if pairs.lumped else interface.weights
@@ -150,7 +182,7 @@ def attach(
         facts=(head, *_facts(law, pairs, interface, system, f"pressure: {origin}; {of_pressure}"), *(flags or [VALID])),
         viscous=viscous,
         paper=damping == "paper",
-        frequency=frequency,
+        frequency=at_frequency,
         first_element=_first_free(file),
         contact=_contact(law, spec, float(used.max()), mean),
     )
@@ -184,7 +216,7 @@ def _joint(study: Study, faces: tuple[str, str], name: str | None) -> JointChoic
     if name is None and len(study.joints) == 1:
         return study.joints[0]
     names = ", ".join(repr(spec.name) for spec in study.joints)
-    raise InputError(f"the study has the joints {names}; choose whose law to take with --joint NAME")
+    raise InputError(f"the study has the joints {names}; choose whose law to take by joint (--joint NAME)")
 
 
 def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_size: bool, unit: str) -> Interface:
@@ -198,7 +230,7 @@ def _interface(mesh: Mesh, faces: tuple[str, str], tolerance: float | None, any_
     if not any_size and not SMALLEST <= interface.area <= LARGEST:
         raise InputError(
             f"in {unit} the joint has {interface.area:.3g} m2; is that the unit of the model? Areas from "
-            f"{SMALLEST * 1e6:g} mm2 to {LARGEST:g} m2 are taken; if it is right, add --any-size"
+            f"{SMALLEST * 1e6:g} mm2 to {LARGEST:g} m2 are taken; if it is right, say so by any_size (--any-size)"
         )
     return interface
 
@@ -258,7 +290,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     loads = study.loads
     if preload is None and len(loads) > 1:
         known = ", ".join(one.name for one in study.preloads)
-        raise InputError(f"the study has the preloads {known}; say which with --preload")
+        raise InputError(f"the study has the preloads {known}; say which by preload (--preload)")
     number = preload_index(loads, preload)
     structure = structure_of(study, mesh, surfaces_of(study))
     solved_preload = checked_preload(

@@ -8,6 +8,7 @@ from faying.decks.matrices import arranged, read_matrices
 from faying.errors import InputError
 from faying.export.attach import Attachment
 from faying.fe.elasticity import rigid_motions
+from faying.misuse import checked_call
 from faying.numerics.damped import DampedModes, damped_modes
 from faying.numerics.memory import check_modes
 from faying.numerics.modes import lowest_modes
@@ -16,6 +17,7 @@ SPARE = 6  # modes beyond those asked for, for the basis of the complex ones
 STILL = 1e-9  # of the greatest energy of a rigid motion under an equal diagonal: below it nothing resists
 
 
+@checked_call
 def modes_with_joint(
     attachment: Attachment,
     matrices: str | Path,
@@ -26,10 +28,22 @@ def modes_with_joint(
     dofs: str | Path | None = None,
     count: int = 10,
 ) -> tuple[DampedModes, int]:
-    """Elastic modes, with loss factors, of stiffness and mass from a file (as `read_matrices` takes) and the joint.
+    """Find the elastic modes, with loss factors, of parts that another program has assembled, and of the joint.
 
-    The matrices must be those of the attachment's mesh, node by node. Returns the modes and how many rigid motions
-    nothing resists.
+    Args:
+        attachment: The joint, on the mesh of the matrices, node by node.
+        matrices: File of stiffness and mass, or of the stiffness: .sti, .mtx, .npz, DMIG.
+        stiffness_unit, mass_unit: Units of the entries, such as "N/mm" and "t".
+        mass, dofs: With a .mtx: file of the mass, and of "node direction" of each row.
+        count: How many elastic modes.
+        solver: What factorises the matrices, by the names of a study; chosen where None.
+
+    Returns:
+        The modes, and how many rigid motions nothing resists.
+
+    Raises:
+        ReadError, InputError: Files or units that cannot be used, matrices of another mesh or with supports.
+        NotConverged: The iteration stops short.
     """
     pairs, mesh = attachment.pairs, attachment.deck.mesh
     read = read_matrices(matrices, stiffness_unit=stiffness_unit, mass_unit=mass_unit, mass=mass, dofs=dofs)

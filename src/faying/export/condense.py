@@ -1,7 +1,9 @@
 """One joint of a study as a 6 x 6 stiffness and loss between two points, with its error over frequency."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -10,15 +12,19 @@ from faying.case.case import Case, Progress
 from faying.case.preloads import solved_preload
 from faying.decks.deck import CondensedDeck
 from faying.decks.system import UnitSystem
+from faying.decks.write import write_condensed
 from faying.errors import InputError
 from faying.export.condensed import CondensedJoint, condensed_modes
 from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.support_check import check_motions
+from faying.loads.load import vector
 from faying.measured.mac import mac, partners
+from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.fields import listed
 from faying.study.study import Study
+from faying.style import Summary
 from faying.text import in_columns
 from faying.typing import Array
 from faying.units import load_text
@@ -27,10 +33,11 @@ LIKE = 0.5  # MAC by mass from which two modes are one
 CLOSE = 0.01  # error of a frequency up to which the condensed joint counts as right
 COUNTED = 2  # spare modes with the joint condensed, so that the last ones find a partner
 STAGES = 6
+Point = Sequence[float | str] | Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Condensed:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Condensed(Summary):
     """A joint of a study, condensed.
 
     Args:
@@ -91,6 +98,46 @@ class Condensed:
             facts=facts,
         )
 
+    def write(
+        self,
+        program: str,
+        folder: str | Path,
+        *,
+        unit: str,
+        force_unit: str = "N",
+        nodes: tuple[int, int] = (900_001, 900_002),
+        element: int = 900_001,
+    ) -> list[Path]:
+        """Write the joint for another program.
+
+        Args:
+            program: "nastran", "mapdl" or "abaqus".
+            folder: Where the files go; it is made where it does not exist.
+            unit, force_unit: Units of length and force of that program's model.
+            nodes: Numbers of the nodes at the two points.
+            element: Number of the element and its property.
+
+        Returns:
+            The files.
+
+        Raises:
+            InputError: A program that has no matrix element, wrong units or numbers, or a folder that cannot be used.
+        """
+        deck = self.deck(unit=unit, force_unit=force_unit, nodes=nodes, element=element)
+        return write_condensed(deck, program, Path(folder))
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return the joint, its stiffness along the axes and about them, and how far ties to it are right."""
+        along = ", ".join(f"{k:.4g}" for k in np.diag(self.joint.stiffness))
+        place = ", ".join(f"{x:.4g}" for x in (1e3 * self.joint.point).round(6) + 0.0)
+        reach = f"up to {self.reach:.4g} Hz" if self.reach else "in no mode"
+        return f"Joint {self.name} of {self.study} at {load_text(self.load)}", {
+            "about": f"({place}) mm",
+            "diagonal": f"{along} N/m and N m",
+            "loss": "none is predicted" if self.lossless else "predicted",
+            "mean ties": f"right within 1 % {reach}",
+        }
+
     def rows(self) -> list[list[str]]:
         """One row per mode: the full model, and both ties with their errors; loss where the law predicts one."""
         f = self.frequencies
@@ -124,30 +171,33 @@ class Condensed:
         }
 
 
+@checked_call
 def condense(
-    study: Study,
+    study: Study | str | Path,
     *,
     joint: str | None = None,
     preload: str | None = None,
-    points: tuple[Array | None, Array | None] = (None, None),
+    points: tuple[Point | None, Point | None] = (None, None),
     report: Report | None = None,
 ) -> Condensed:
-    """Solve a study at one preload and condense one of its joints.
+    """Solve a study at one preload and condense one of its joints to a 6 x 6 stiffness between two points.
 
     Args:
-        study: the study.
-        joint: name of the joint; the only one where None.
-        preload: which of the study's preloads, as text with a unit; the greatest where None.
-        points: of the first face and of the second (3,) [m]; the centre of the joint's normal springs where None.
-        report: called as each stage begins.
+        study: The study, or the path of its file.
+        joint: Name of the joint; the only one where None.
+        preload: Which of the study's preloads, as text with a unit; the greatest where None.
+        points: Of the first face and of the second, x, y, z [m] or text with units; the
+            centre of the joint's normal springs where None.
+        report: Called as each stage begins.
 
     Returns:
         The joint, condensed, and the modes with and without that.
 
     Raises:
-        InputError, ReadError: what the study gives cannot be used, no such joint or preload, an open joint.
-        NotConverged: an iteration stops short.
+        InputError, ReadError: What the study gives cannot be used, no such joint or preload, an open joint.
+        NotConverged: An iteration stops short.
     """
+    study = Study.read(study)
     number, index = _joint(study, joint), preload_index(study.loads, preload)
     progress = Progress(STAGES + index, report)
     case = Case.of(study, progress)
@@ -180,7 +230,7 @@ def condense(
         name=study.joints[number].name,
         load=study.loads[index],
         joint=made,
-        points=np.stack([made.point if p is None else p for p in points]),
+        points=np.array([made.point if p is None else vector(list(p), "m", "points") for p in points]),
         frequencies=frequencies,
         loss=lost / (2 * np.pi * frequencies) ** 2,
         mean=mean,
@@ -193,7 +243,7 @@ def condense(
 def _joint(study: Study, name: str | None) -> int:
     names = [one.name for one in study.joints]
     if name is None and len(names) > 1:
-        raise InputError(f"the study has the joints {', '.join(map(repr, names))}; say which with --joint NAME")
+        raise InputError(f"the study has the joints {', '.join(map(repr, names))}; say which by joint (--joint NAME)")
     if name is not None and name not in names:
         raise InputError(f"no joint {name!r}; the study has {', '.join(map(repr, names))}")
     return 0 if name is None else names.index(name)

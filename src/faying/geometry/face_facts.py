@@ -9,10 +9,12 @@ from typing import Any, Literal
 
 import numpy as np
 
+from faying.errors import InputError
 from faying.fe.overlap import overlap
 from faying.geometry.cad import check_head, read_parts
 from faying.geometry.cad_process import Answer, ask
 from faying.notes import Note
+from faying.style import Summary
 from faying.typing import Array, Index
 
 Point = tuple[float, float, float]
@@ -105,8 +107,26 @@ class TouchingFaces:
         return self.first[0], self.second[0]
 
 
-@dataclass(frozen=True, kw_only=True)
-class GeometryFacts:
+# SI units of the numbers of a geometry
+UNITS = {
+    "area": "m^2",
+    "centre": "m",
+    "normal": "1",
+    "radius": "m",
+    "axis": "1",
+    "start": "m",
+    "length": "m",
+    "turn": "1",
+    "gap": "m",
+    "volume": "m^3",
+    "low": "m",
+    "high": "m",
+}
+MAX_ROWS = 8  # parts in a summary
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class GeometryFacts(Summary):
     """Parts, faces and contacts of a geometry.
 
     Args:
@@ -128,6 +148,34 @@ class GeometryFacts:
     notes: tuple[Note, ...]
     corners: Array
     face_of: Index
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return what the geometry consists of, and the size of each part."""
+        rows = {}
+        for part in self.parts[:MAX_ROWS]:
+            sides = " x ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(part.low, part.high, strict=True))
+            rows[part.name] = f"{len(self.by_part[part.name])} faces, {1e6 * part.volume:.4g} cm^3, within {sides} mm"
+        rows |= {"more parts": str(len(self.parts) - MAX_ROWS)} if len(self.parts) > MAX_ROWS else {}
+        touching = f"{len(self.contacts)} pair{'s' * (len(self.contacts) != 1)} that touch"
+        return f"Geometry {self.file}: {len(self.parts)} parts, {len(self.faces)} faces, {touching}", rows
+
+    def of_part(self, name: str) -> "GeometryFacts":
+        """Return one part, its faces and their contacts. Raises InputError where there is no such part."""
+        if name not in self.by_part:
+            raise InputError(f"no part is called {name!r}; the parts are {', '.join(map(repr, self.by_part))}")
+        contacts = tuple(c for c in self.contacts if name in (c.first[0], c.second[0]))
+        return replace(self.without([part.name for part in self.parts if part.name != name]), contacts=contacts)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Parts, faces and contacts in SI units, with the units of their numbers."""
+        return {
+            "file": self.file,
+            "units": UNITS,
+            "parts": [asdict(part) for part in self.parts],
+            "faces": [asdict(face) for face in self.faces],
+            "contacts": [asdict(contact) for contact in self.contacts],
+            "notes": [note.text for note in self.notes],
+        }
 
     @cached_property
     def by_part(self) -> dict[str, tuple[FaceFacts, ...]]:

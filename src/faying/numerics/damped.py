@@ -16,15 +16,17 @@ from faying.numerics.modal_reanalysis import MIN_NEW_SHARE, Measure, ModalReanal
 from faying.numerics.modes import Modes
 from faying.numerics.product import combined, product
 from faying.numerics.signs import definite
+from faying.style import Summary
 from faying.typing import Array, Complex, Index
 
 Kind = Literal["hysteretic", "viscous"]
 ROUNDS = 25  # enrichments after which the loss must be so great that nothing here applies
+MAX_ROWS = 10  # of a summary
 SLIGHT = 0.01  # of the tolerance: what mends less is left out
 
 
-@dataclass(frozen=True, kw_only=True)
-class DampedModes:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class DampedModes(Summary):
     """Complex modes in rising order.
 
     frequencies [Hz], loss_factors [-] (m,): of the complex eigenvalue w^2 (1 + i eta) under hysteretic loss; under
@@ -37,6 +39,12 @@ class DampedModes:
     loss_factors: Array
     error: Array
     shapes: Complex
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return the first frequencies with their loss factors."""
+        pairs = zip(self.frequencies[:MAX_ROWS], self.loss_factors[:MAX_ROWS], strict=True)
+        rows = {f"mode {k}": f"{f:.6g} Hz, loss factor {loss:.3g}" for k, (f, loss) in enumerate(pairs, 1)}
+        return f"{len(self.frequencies)} complex modes of {len(self.shapes):,} unknowns", rows
 
     def scaled_shapes(self, mass: Any) -> tuple[Array, Array]:
         """Real and imaginary part of the shapes (unknowns, m), scaled so that the real part is mass-normalised."""

@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from faying import __version__
-from faying.files import write_text
+from faying.export import universal
+from faying.files import together, write_text
+from faying.misuse import checked_call
 from faying.notes import FIRST_NOTES, TITLES, by_severity, grave, grouped
 from faying.output import answer, page, report_measured
 from faying.output.figures import narrowing
@@ -208,6 +210,7 @@ SHAPES = (
     "Names: what most of the motion is, in slices across the longest side, or the part that moves most and its axis."
 )
 MOVING = ("modes",)  # figures that the view stands for on a screen
+RESULT = "result.nc"  # is kept where the rest does not fit
 TEST = "test_"  # the figures of the hammer test begin with it
 
 
@@ -312,7 +315,7 @@ def write(result: Result, folder: Path) -> list[Path]:
 
     With a hammer test: comparison.csv, and its figures with test_ before their names.
     """
-    made = [result.save(folder / "result.nc"), result.to_csv(folder / "modes.csv")]
+    made = [result.save(folder / RESULT), result.to_csv(folder / "modes.csv")]
     if result.hammer is not None:
         made.append(write_text(folder / "comparison.csv", result.hammer.csv_text()))
     pictures = {}
@@ -324,3 +327,23 @@ def write(result: Result, folder: Path) -> list[Path]:
             made.append(file)
     made.append(write_text(folder / "report.html", html(result, pictures)))
     return made
+
+
+@checked_call
+def write_report(result: Result, folder: str | Path, *, uff: bool = False) -> list[Path]:
+    """Write what `faying run` writes: the result, its tables as CSV, its figures, and a report as one page.
+
+    Args:
+        result: Result of a run.
+        folder: Where the files go; it is made where it does not exist.
+        uff: Whether to write modes and frequency responses as universal files, too.
+
+    Returns:
+        The files, which appear together or not at all.
+
+    Raises:
+        InputError: The folder cannot be used, or a response has no direction that universal files know.
+    """
+    with together(Path(folder), "give another folder", [RESULT]) as hidden:
+        files = [*write(result, hidden), *(universal.write(result, hidden) if uff else [])]
+    return [Path(folder) / file.name for file in files]

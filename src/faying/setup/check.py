@@ -1,11 +1,12 @@
 """What can be said of a study in seconds, before anything is solved: faults, notes, what a run will need."""
 
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Literal
+from textwrap import shorten
+from typing import Any, Literal, get_args
 
 from faying.bolt.bolt import Bolt, BoltPlace, each_in_its_place
 from faying.bolt.dowel import Dowel, DowelPlace
@@ -23,6 +24,7 @@ from faying.joint.bolted import nothing_moves, seat_apart
 from faying.joint.joint import each_pair_once
 from faying.joint.strength import SolidPlace, bolt_notes, material_notes
 from faying.memory import available
+from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import duration
 from faying.setup.bolt_names import MOST_NAMES, grouped
@@ -34,10 +36,12 @@ from faying.study.declaration.reader import StudyFaults
 from faying.study.keys.face import place_name
 from faying.study.keys.geometry import mesh_of
 from faying.study.study import Study
+from faying.style import Summary
 from faying.units import show, show_area
 
 MOST_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
-Level = Literal["ok", "note", "fault"]
+MAX_ROWS = 8  # findings in a summary
+Level = Literal["fault", "note", "ok"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,9 +63,9 @@ class Finding:
     line: int | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Checked:
-    """All findings on a study, faults first within each thing looked at, and what a run is expected to need."""
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Checked(Summary):
+    """All findings on a study, in the order in which they were looked at, and what a run is expected to need."""
 
     findings: tuple[Finding, ...]
     expected: Expected | None = None
@@ -70,6 +74,46 @@ class Checked:
     def faults(self) -> tuple[Finding, ...]:
         """The findings with which a run would stop."""
         return tuple(one for one in self.findings if one.level == "fault")
+
+    @property
+    def by_level(self) -> tuple[Finding, ...]:
+        """Faults, then notes, then what is well."""
+        return tuple(one for level in get_args(Level) for one in self.findings if one.level == level)
+
+    @property
+    def count(self) -> str:
+        """How many faults and notes there are, in words."""
+        notes = sum(one.level == "note" for one in self.findings)
+        faults = len(self.faults)
+        return f"{faults} fault{'s' * (faults != 1)}, {notes} note{'s' * (notes != 1)}"
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return how many faults and notes there are, the first of them, and what a run needs."""
+        grave = [one for one in self.by_level if one.level != "ok"]
+        rows = {
+            f"{one.level} {k}": shorten(one.text, 100, placeholder=" ...") for k, one in enumerate(grave[:MAX_ROWS], 1)
+        }
+        rows |= {"more": f"{len(grave) - MAX_ROWS}, in .findings"} if len(grave) > MAX_ROWS else {}
+        if self.expected is not None:
+            need = self.expected
+            rows["a run needs"] = f"{need.unknowns:,} unknowns, {need.memory / 1e9:.2g} GB, {duration(need.seconds)}"
+        return f"Check of a study: {self.count}", rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """Findings, and what a run is expected to need, with units."""
+        need = self.expected
+        return {
+            "findings": [asdict(one) for one in self.findings],
+            "faults": len(self.faults),
+            "expected": None
+            if need is None
+            else {
+                "unknowns": need.unknowns,
+                "memory": {"unit": "B", "values": need.memory},
+                "time": {"unit": "s", "values": need.seconds},
+                "basis": need.basis,
+            },
+        }
 
 
 @dataclass
@@ -93,12 +137,13 @@ class _Findings:
         return True
 
 
-def check(path: str | Path, *, mesh: bool = False) -> Checked:
+@checked_call
+def check(path: str | Path, *, mesh: bool = True) -> Checked:
     """Look at a study file without solving: its keys, names, contacts, bolts, seats, laws and size.
 
     Args:
-        path: the study file.
-        mesh: whether to mesh its STEP file, too, which counts the unknowns and finds what the mesher refuses; the mesh
+        path: Study file.
+        mesh: Whether to mesh its STEP file, too, which counts the unknowns and finds what the mesher refuses; the mesh
             is kept for the run. Not where it is expected to have more than 400,000 unknowns.
 
     Returns:
@@ -392,9 +437,3 @@ def _dowels(sketch: Sketch, found: _Findings) -> None:
                 for wall, (low, high) in zip(made.walls, made.depths, strict=True)
             )
             found.add("ok", "dowel", f"dowel {dowel.name!r}: {show(made.diameter, 'm')} thick, {depths}", key)
-
-
-def by_level(checked: Checked) -> Iterator[Finding]:
-    """Faults, then notes, then what is well."""
-    for level in ("fault", "note", "ok"):
-        yield from (one for one in checked.findings if one.level == level)

@@ -4,19 +4,23 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from textwrap import shorten
+from typing import Any
 
 from faying.errors import InputError
 from faying.files import together, write_atomically, write_text
 from faying.geometry.cad import STEP
-from faying.geometry.face_facts import read_facts
 from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
+from faying.misuse import checked_call
 from faying.setup.bolt_names import grouped
 from faying.setup.edit import written as quoted
+from faying.setup.faces import faces
 from faying.setup.mesh_proposal import propose_mesh
 from faying.setup.proposal import GRADE, SHARE, BoltProposal, DowelProposal, Proposal, propose
 from faying.setup.template import SCHEMA, surface
-from faying.units import show, show_area
+from faying.style import Summary
+from faying.units import show, show_area, si
 
 STEEL = "S355"
 
@@ -36,13 +40,97 @@ class Answers:
     scan: Path | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Written:
-    """The files that were written, and what was assumed, in the order of the study."""
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Written(Summary):
+    """The files that were written, what was found, and what was assumed, in the order of the study."""
 
     files: tuple[Path, ...]
     proposal: Proposal
     assumed: tuple[str, ...]
+
+    @property
+    def found(self) -> str:
+        """How many parts, joints, bolts and dowels were found, in words."""
+        proposal = self.proposal
+        counts = {"joint": len(proposal.joints), "bolt": len(proposal.bolts), "dowel": len(proposal.dowels)}
+        words = [f"{count} {kind}{'s' * (count != 1)}" for kind, count in counts.items() if count or kind != "dowel"]
+        more = f" and {len(proposal.left_out)} more that are not meshed" if proposal.left_out else ""
+        return ", ".join([f"{len(proposal.facts.parts)} parts{more}", *words])
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return what was found, the files, and the first of what was assumed."""
+        rows = {"written": ", ".join(map(str, self.files))}
+        rows |= {f"assumed {k}": shorten(line, 100, placeholder=" ...") for k, line in enumerate(self.assumed[:8], 1)}
+        rows |= {"more": f"{len(self.assumed) - 8}, in .assumed"} if len(self.assumed) > 8 else {}
+        return f"Study of {self.proposal.facts.file}: {self.found}", rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """What was found and written, in SI units."""
+        found = self.proposal
+        return {
+            "files": [str(file) for file in self.files],
+            "parts": [part.name for part in found.facts.parts],
+            "left_out": list(found.left_out),
+            "joints": [
+                {"name": j.name, "faces": list(j.faces), "area": {"unit": "m^2", "values": j.area}}
+                for j in found.joints
+            ],
+            "bolts": [
+                {
+                    "name": b.name,
+                    "faces": list(b.faces),
+                    "size": b.size and f"M{b.size}",
+                    "part": b.part,
+                    "preload": {"unit": "N", "values": b.preload},
+                }
+                for b in found.bolts
+            ],
+            "dowels": [{"name": d.name, "walls": list(d.walls)} for d in found.dowels],
+            "size": {"unit": "m", "values": found.size},
+            "unknowns": found.unknowns,
+            "assumed": list(self.assumed),
+        }
+
+
+@checked_call
+def new_study(
+    geometry: str | Path,
+    study: str | Path = "study.toml",
+    *,
+    scan: str | Path | None = None,
+    materials: str | Mapping[str, str] | None = None,
+    preload: float | str | None = None,
+    unit: str | None = None,
+    force: bool = False,
+) -> Written:
+    """Write a commented study of an assembly: the joints, bolts, dowels and seats that its geometry has.
+
+    Args:
+        geometry: STEP file, or mesh file of another program whose faces have names.
+        study: The file to write.
+        scan: Scan of one face; a synthetic milled one is written where None.
+        materials: Material of all parts, or part -> material, of the catalogue; steel where a part is left out.
+        preload: Force of each bolt [N], or text such as "12 kN"; 70 % of the proof load of class 8.8 where None.
+        unit: Unit of a mesh file's coordinates, such as "mm".
+        force: Whether files that exist are replaced.
+
+    Returns:
+        What was found, written and assumed.
+
+    Raises:
+        InputError: A file exists, a material or a part is unknown, or nothing can be written there.
+        ReadError: The geometry cannot be read.
+    """
+    path, out = Path(geometry), Path(study)
+    proposal = find(path, unit)
+    parts = [part.name for part in proposal.facts.parts]
+    given = dict.fromkeys(parts, materials) if isinstance(materials, str) else dict(materials or {})
+    unknown = [name for name in given if name not in parts]
+    if unknown:
+        raise InputError(f"no part is called {unknown[0]!r}; the parts are {', '.join(map(repr, parts))}")
+    force_of_bolts = None if preload is None else si(preload, "N", name="preload")
+    answers = Answers(materials=given, preload=force_of_bolts, scan=None if scan is None else Path(scan))
+    return write(proposal, path, out, answers, force=force)
 
 
 def find(step: Path, unit: str | None = None) -> Proposal:
@@ -51,9 +139,7 @@ def find(step: Path, unit: str | None = None) -> Proposal:
     Raises ReadError and InputError as `propose` and `propose_mesh`.
     """
     if step.suffix.lower() in STEP:
-        if unit is not None:
-            raise InputError("--unit is for mesh files; a STEP file states its unit, so leave --unit out")
-        return propose(read_facts(step), step)
+        return propose(faces(step, unit=unit), step)
     return propose_mesh(step, unit)
 
 
@@ -78,9 +164,11 @@ def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force:
     made = [out.name] if answers.scan is not None else [out.name, scan_name(out)]
     there = [out.parent / name for name in made if (out.parent / name).exists()]
     if there and not force:
-        raise InputError(f"{there[0]} exists already; name another study with --out, or replace it with --force")
+        raise InputError(
+            f"{there[0]} exists already; name another study (--out), or have it replaced by force (--force)"
+        )
     text, assumed = study_text(proposal, step, out, answers)
-    with together(out.parent, "give another place with --out") as folder:
+    with together(out.parent, "give another place (--out)") as folder:
         write_text(folder / out.name, text)
         if answers.scan is None:
             write_atomically(folder / scan_name(out), surface)
@@ -312,14 +400,8 @@ def _plain(text: str) -> str:
 
 def summary(written: Written, study: Path) -> Sequence[str]:
     """What the terminal shows: what was found, what was assumed, and what to do next."""
-    found = written.proposal
-    plural = "s" * (len(found.bolts) != 1)
-    parts = f"{len(found.facts.parts)} parts"
-    bolts = f"{len(found.bolts)} bolt{plural}"
-    dowels = f", {len(found.dowels)} dowel{'s' * (len(found.dowels) != 1)}" if found.dowels else ""
-    parts += f" and {len(found.left_out)} more that are not meshed" if found.left_out else ""
     return [
-        f"found: {parts}, {len(found.joints)} joint{'s' * (len(found.joints) != 1)}, {bolts}{dowels}",
+        f"found: {written.found}",
         *(f"assumed: {line}" for line in written.assumed),
         f"written: {', '.join(str(file) for file in written.files)}",
         f"next: faying check {study}, then faying run {study}",
