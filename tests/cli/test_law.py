@@ -87,6 +87,16 @@ def test_material_without_catalogue() -> None:
     assert json.loads(run(*words))["k_n"]["values"] == pytest.approx([float(same.at_pressure(2e6).k_n)], rel=1e-9)
 
 
+def test_a_law_that_was_measured_needs_no_material() -> None:
+    """approach = C p^m, k_n = p^(1 - m)/(C m): 2 MPa/um at 1 MPa."""
+    found = json.loads(
+        run("--model", "power-law", "--set", "C=1e-9", "--set", "m=0.5", "--pressure", "1 MPa", "--json")
+    )
+    assert found["k_n"]["values"] == pytest.approx([2e12])
+    with pytest.raises(InputError, match="no material"):
+        run("--model", "power-law", "--set", "C=1e-9", "--set", "m=0.5", "--conductance")
+
+
 def test_rows_outside_the_validity_range_carry_a_star_and_the_reason() -> None:
     out = run(*SPECIMEN, "--pressure", "1 MPa:40 MPa:4")
     assert [line.endswith("*") for line in out.split("\n\n")[3].splitlines()[1:]] == [False, False, True, True]

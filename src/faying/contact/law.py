@@ -106,7 +106,7 @@ class ContactLaw(Summary, ABC):
     def from_entries(cls, given: Mapping[str, object], pair: ContactPair) -> Self:
         """Return the law from values of `entries` in SI units; InputError where they do not fit."""
         own: dict[str, Any] = dict(given)
-        if cls._has("pair"):
+        if cls.takes_materials():
             own["pair"] = pair
         return cls(**own)
 
@@ -118,6 +118,11 @@ class ContactLaw(Summary, ABC):
     @classmethod
     def _has(cls, name: str) -> bool:
         return any(f.name == name for f in fields(cls))  # type: ignore[arg-type]
+
+    @classmethod
+    def takes_materials(cls) -> bool:
+        """Whether the law is made from the materials that meet; one that was measured is not."""
+        return cls._has("pair")
 
     @classmethod
     def required(cls) -> tuple[str, ...]:

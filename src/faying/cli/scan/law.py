@@ -116,7 +116,8 @@ def command(
     if not on_scan and (stability or options["counter"] is not None):
         raise InputError("--stability and --counter go with --scan FILE")
     kind = find(model or ("auto" if on_scan else "JK"))
-    pair = pair_of(options)
+    needed = on_scan or options["conductance"] or kind.label == "auto" or kind.law.takes_materials()
+    pair = pair_of(options, needed=needed)
     mates = mates_of(options, kind, pair)
     pressures = pressures_of(pressure or PRESSURES)
     several = None if all_models else [name for name in (models or "").split(",") if name.strip()]
@@ -225,8 +226,8 @@ def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> Any:
     return faces
 
 
-def pair_of(options: dict[str, Any]) -> Any:
-    """Build the pair from --material, --E ... and --against."""
+def pair_of(options: dict[str, Any], *, needed: bool) -> Any:
+    """Build the pair from --material, --E ... and --against; needed: whether a law takes it."""
 
     from faying.materials import ContactPair, Material, material_of
 
@@ -238,6 +239,8 @@ def pair_of(options: dict[str, Any]) -> Any:
     if options["conductivity"] is not None:
         given["conductivity"] = parse(options["conductivity"], "W/(m*K)", name="--conductivity")
     if options["material"] is None:
+        if not given and not needed:
+            return ContactPair("45 steel", "45 steel")  # of a law that was measured, which takes none
         if not {"E", "nu"} <= set(given):
             raise InputError('no material: give --material, for example "45 steel", or --E and --nu')
         rough = Material(name="given", **given)
