@@ -197,6 +197,6 @@ def test_a_mesher_that_gives_up_is_a_fault_of_the_file(tmp_path, monkeypatch):
 
     path = step(tmp_path, named(Box(Pnt(0, 0, 0), Pnt(10, 10, 10)), "box"))
     monkeypatch.setattr(OCCGeometry, "GenerateMesh", stopped)
-    request = geometry._Request(path=str(path), size=5e-3, local_size={}, selectors={}, snap=0.0)
+    request = {"path": str(path), "size": 5e-3, "local_size": {}, "selectors": {}, "snap": 0.0}
     with pytest.raises(faying.InputError, match=r"parts.step cannot be meshed with size 5 mm \(Stop in surface"):
-        geometry._mesh_here(request)
+        geometry.mesh_answer(request)

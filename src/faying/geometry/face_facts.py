@@ -1,6 +1,6 @@
 """What the faces of a geometry are: planes and cylinders, holes and shafts, neighbours, and where parts touch."""
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import combinations, pairwise
@@ -238,9 +238,9 @@ def read_facts(
     facts = answer.facts
     return GeometryFacts(
         file=path.name,
-        parts=tuple(PartFacts(**_tuples(one)) for one in facts["parts"]),
-        faces=tuple(FaceFacts(**_tuples(one)) for one in facts["faces"]),
-        contacts=tuple(TouchingFaces(**_tuples(one)) for one in facts["contacts"]),
+        parts=tuple(PartFacts(**tuples(one)) for one in facts["parts"]),
+        faces=tuple(FaceFacts(**tuples(one)) for one in facts["faces"]),
+        contacts=tuple(TouchingFaces(**tuples(one)) for one in facts["contacts"]),
         distances=facts["distances"],
         overlaps=tuple(facts["overlaps"]),
         notes=tuple(Note(**one) for one in facts["notes"]),
@@ -321,7 +321,8 @@ def _point(values: Any) -> Point:
     return x, y, z
 
 
-def _tuples(fields: dict[str, Any]) -> dict[str, Any]:
+def tuples(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Fields with tuples where JSON has lists."""
     return {name: tuple(value) if isinstance(value, list) else value for name, value in fields.items()}
 
 

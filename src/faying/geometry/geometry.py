@@ -20,8 +20,8 @@ from faying.fe.solids import split_at_joints
 from faying.fe.straighten import straightened
 from faying.geometry.cad import CadParts, check_head, kernel, read_parts
 from faying.geometry.cad_process import Answer, ask
-from faying.geometry.face_facts import facts_of, shared_volumes
-from faying.geometry.selectors import Selector, chosen, from_plain, points_of
+from faying.geometry.face_facts import facts_of, shared_volumes, tuples
+from faying.geometry.selectors import Selector, chosen, points_of
 from faying.memory import available
 from faying.notes import Note
 from faying.numerics.memory import guessed
@@ -109,16 +109,11 @@ def mesh_step(
     )
 
 
-def mesh_answer(request: dict[str, Any]) -> Answer:
+def mesh_answer(given: dict[str, Any]) -> Answer:
     """Mesh what `mesh_step` asks for; this runs in the process of its own, and whoever asked checks the mesh."""
-    return _mesh_here(_Request(**request))
-
-
-def _mesh_here(request: _Request) -> Answer:
+    request = _Request(**given)
     path, size = Path(request.path), request.size
-    local_size = request.local_size
     occ = kernel()
-    Glue = occ.Glue
     held = read_parts(path).without(request.leave_out)
     solids, names, notes = held.solids, held.names, held.notes
     for solid, name in zip(solids, names, strict=True):
@@ -128,7 +123,7 @@ def _mesh_here(request: _Request) -> Answer:
     # gluing merges touching faces and keeps one of their names: remember the geometry of every named face
     marks = [Mark(face.name, names[i], face) for i, solid in enumerate(solids) for face in solid.faces if face.name]
     marks += _selected(held, request, {mark.name for mark in marks})
-    glued = Glue(solids) if len(solids) > 1 else solids[0]
+    glued = occ.Glue(solids) if len(solids) > 1 else solids[0]
     parts = list(glued.solids)
     if len(parts) != len(solids):
         raise InputError(
@@ -145,7 +140,7 @@ def _mesh_here(request: _Request) -> Answer:
         sides = {solid.name: {int(face.name) for face in solid.faces} for solid in parts}
         _label_pieces(glued, listed, sides, size, cut, labels)
     found = {label for pairs in labels for label, _ in pairs}
-    for label, size_here in local_size.items():
+    for label, size_here in request.local_size.items():
         if label not in found:
             raise InputError(f"size of face {label!r}: the faces are {', '.join(sorted(found))}")
         for face, pairs in zip(listed, labels, strict=True):
@@ -175,7 +170,7 @@ def _meshed(glued: Any, size: float, name: str) -> Any:
 
 def _selected(held: CadParts, request: _Request, taken: Container[str]) -> list["Mark"]:
     """Marks of the faces that the selectors mean. Raises InputError where one takes a name that the file gives."""
-    selectors = {label: from_plain(fields) for label, fields in request.selectors.items()}
+    selectors = {label: Selector(**tuples(fields)) for label, fields in request.selectors.items()}
     again = [label for label in selectors if label in taken]
     if again:
         raise InputError(f"face {again[0]!r}: the file has a face of this name already; choose another name")

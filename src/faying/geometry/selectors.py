@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -160,9 +159,3 @@ def _nearest(label: str, selector: Selector, facts: GeometryFacts, faces: Sequen
             f"more than {show(selector.within, 'm')}: {listed([best])}; check the point and its unit, or give within"
         )
     return [face for face in faces if away[face.number - 1] < least + AMBIGUOUS]
-
-
-def from_plain(fields: Mapping[str, Any]) -> Selector:
-    """A selector from what JSON keeps of it."""
-    given: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in fields.items()}
-    return Selector(**given)
