@@ -1,7 +1,5 @@
 """A hammer test against a model: MAC, paired modes, frequencies, damping, FRFs."""
 
-import csv
-import io
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,9 +13,14 @@ from faying.measured.modes import ModeSet
 from faying.measured.pairing import pair_modes
 from faying.misuse import checked_call
 from faying.style import Summary
+from faying.text import csv_text
 from faying.typing import Array, Complex, Index, Mask
 
 ALIKE = 0.9
+CSV_HEAD = (
+    "test mode,test frequency [Hz],test loss factor [-],loss low [-],loss high [-],model mode,model frequency [Hz],"
+    "model loss factor [-],frequency difference [-],MAC [-]"
+)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -76,6 +79,11 @@ class ModalComparison(Summary):
         t, m = self.pairs.T
         return np.asarray(self.model.frequencies[m] / self.test.frequencies[t] - 1)
 
+    @property
+    def _partner(self) -> dict[int, int]:
+        """Mode of the model with which a mode of the test is paired."""
+        return {int(t): int(m) for t, m in self.pairs}
+
     def model_shapes(self) -> Array:
         """The model's shapes along the test's degrees of freedom (m, d)."""
         return np.asarray(np.einsum("mdx,dx->md", self.model.shapes[:, self.nodes], self.axes))
@@ -93,12 +101,11 @@ class ModalComparison(Summary):
             "interval",
             "model loss",
         ]
-        partner = {int(t): int(m) for t, m in self.pairs}
         out = [head]
         for t, (f, loss) in enumerate(zip(self.test.frequencies, self.test.loss_factors, strict=True)):
             span = self.test.loss_interval
             interval = "-" if span is None else f"{span[t, 0]:.1e} .. {span[t, 1]:.1e}"
-            m = partner.get(t)
+            m = self._partner.get(t)
             if m is None:
                 found, model_loss = ["-", "-", "-", f"{self.mac[t].max():.2f} at best"], "-"
             else:
@@ -110,37 +117,17 @@ class ModalComparison(Summary):
 
     def csv_text(self) -> str:
         """The pairs as CSV, SI, units in the heading; a mode of the test without partner has empty cells."""
-        out = io.StringIO()
-        table = csv.writer(out, lineterminator="\n")
-        table.writerow(
-            [
-                "test mode",
-                "test frequency [Hz]",
-                "test loss factor [-]",
-                "loss low [-]",
-                "loss high [-]",
-                "model mode",
-                "model frequency [Hz]",
-                "model loss factor [-]",
-                "frequency difference [-]",
-                "MAC [-]",
-            ]
-        )
-        partner = {int(t): int(m) for t, m in self.pairs}
+        rows: list[list[Any]] = [CSV_HEAD.split(",")]
         for t, (f, loss) in enumerate(zip(self.test.frequencies, self.test.loss_factors, strict=True)):
             span = ["", ""] if self.test.loss_interval is None else [f"{v:.8g}" for v in self.test.loss_interval[t]]
             row = [t + 1, f"{f:.8g}", f"{loss:.8g}", *span]
-            m = partner.get(t)
+            m = self._partner.get(t)
             if m is not None:
-                values = (
-                    self.model.frequencies[m],
-                    self.model.loss_factors[m],
-                    self.model.frequencies[m] / f - 1,
-                    self.mac[t, m],
-                )
+                frequency, model_loss = self.model.frequencies[m], self.model.loss_factors[m]
+                values = frequency, model_loss, frequency / f - 1, self.mac[t, m]
                 row += [m + 1, *(f"{v:.8g}" for v in values)]
-            table.writerow(row + [""] * (10 - len(row)))
-        return out.getvalue()
+            rows.append(row + [""] * (10 - len(row)))
+        return csv_text(rows)
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but maps and FRFs, ready for JSON."""
