@@ -29,7 +29,7 @@ def run_of(folder, law, *, second=0, preload='"8 kN"', **changed):
 
 
 def test_runs_are_kept_once_and_the_oldest_go(tmp_path, monkeypatch):
-    monkeypatch.setattr("faying.app.runs.MOST", 3)
+    monkeypatch.setattr("faying.app.runs.MAX_RUNS", 3)
     runs = Runs(Project.at(tmp_path))
     runs.keep()
     assert runs.names() == []
@@ -48,7 +48,7 @@ def test_large_runs_go_earlier_and_the_newest_stays(tmp_path, monkeypatch):
     run_of(tmp_path, "jk")
     size = (tmp_path / "results" / "result.nc").stat().st_size
     for limit, left, start in ((int(2.5 * size), 2, 0), (size // 2, 1, 4)):
-        monkeypatch.setattr("faying.app.runs.MOST_BYTES", limit)
+        monkeypatch.setattr("faying.app.runs.MAX_BYTES", limit)
         for second in range(4):  # each at a time of its own: the newest of one second is not known
             run_of(tmp_path, "jk", second=start + second, title=f"{limit} {second}")
             runs.keep()

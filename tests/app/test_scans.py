@@ -6,7 +6,7 @@ from base64 import b64decode
 import numpy as np
 import pytest
 
-from faying.app.scans import MISSING, MOST, MOST_OF_LINE, OpenScan, band_of, window_of
+from faying.app.scans import MAX_LINE_POINTS, MAX_MAP_POINTS, MISSING, OpenScan, band_of, window_of
 from faying.errors import InputError
 from faying.surface.files.write import write_scan
 from faying.surface.fractal import fit_fractal
@@ -45,10 +45,10 @@ def test_a_small_scan_is_shown_point_by_point_without_its_tilt():
 
 def test_a_large_scan_is_shown_in_means_of_groups():
     rng = np.random.default_rng(3)
-    scan = OpenScan(Scan(heights=rng.normal(size=(2 * MOST, 3 * MOST)), spacing=(1e-6, 1e-6)))
+    scan = OpenScan(Scan(heights=rng.normal(size=(2 * MAX_MAP_POINTS, 3 * MAX_MAP_POINTS)), spacing=(1e-6, 1e-6)))
     found = scan.map(WHOLE)
-    assert (found["width"], found["height"]) == (MOST, MOST)
-    mean = scan.scan.heights.reshape(MOST, 2, MOST, 3).mean(axis=(1, 3))
+    assert (found["width"], found["height"]) == (MAX_MAP_POINTS, MAX_MAP_POINTS)
+    mean = scan.scan.heights.reshape(MAX_MAP_POINTS, 2, MAX_MAP_POINTS, 3).mean(axis=(1, 3))
     inside = (mean > found["low"]) & (mean < found["high"])
     assert np.abs(heights_of(found) - mean)[inside].max() <= 0.51 * (found["high"] - found["low"]) / (MISSING - 1)
 
@@ -66,7 +66,7 @@ def test_a_window_is_that_part_of_the_scan():
 
 
 def test_missing_points_are_missing_and_take_no_part_in_a_mean():
-    values = np.zeros((2 * MOST, 2 * MOST))
+    values = np.zeros((2 * MAX_MAP_POINTS, 2 * MAX_MAP_POINTS))
     values[:4, :4] = np.nan  # two groups each way without a point
     values[10, 10] = np.nan  # one of four
     found = OpenScan(Scan(heights=values, spacing=(1e-6, 1e-6))).map(WHOLE)
@@ -77,13 +77,13 @@ def test_missing_points_are_missing_and_take_no_part_in_a_mean():
 
 
 def test_a_line_keeps_every_peak():
-    n = 10 * MOST_OF_LINE
+    n = 10 * MAX_LINE_POINTS
     values = np.zeros((3, n))
     values[1, 4321], values[1, 8765] = 1.0, -2.0
     values[1, :20] = np.nan
     scan = OpenScan(Scan(heights=values, spacing=(1e-6, 2e-6)))
     found = scan.line("x", 0.5, WHOLE)
-    assert len(found["along"]) <= MOST_OF_LINE
+    assert len(found["along"]) <= MAX_LINE_POINTS
     got = dict(zip(found["along"], found["heights"], strict=True))
     row = scan.scan.heights[1]
     by_place = {round(1e7 * place): height for place, height in got.items()}

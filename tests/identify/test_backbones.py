@@ -75,9 +75,9 @@ def follower(study, values):
     """What follows samples of given values (n, d)."""
     ensemble = Ensemble.of(study, 8, 0).with_values(np.array(values))
     trainer = Trainer.of(study, ensemble, 1e-4, silent)
-    shape, at = median_of(trainer.recipe.case(trainer.structure, ensemble.middle), study.backbone)
+    shape, at = median_of(trainer.builder.case(trainer.structure, ensemble.middle), study.backbone)
     bare = replace(trainer.structure, assembled=None)
-    return Follower(structure=bare, recipe=trainer.recipe, choice=replace(study.backbone, at=at), shape=shape)
+    return Follower(structure=bare, builder=trainer.builder, choice=replace(study.backbone, at=at), shape=shape)
 
 
 def test_a_sample_has_the_curve_of_the_study_with_its_numbers(plan, found):

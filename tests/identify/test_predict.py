@@ -289,13 +289,13 @@ def test_samples_miss_full_solutions_by_less_than_is_said(plan):
     """Solved with the parts' E and density in their materials: the bases have seen scales of two matrices alone."""
     ensemble = Ensemble.of(plan, 4, 5)
     reduced = Reduced(ensemble)
-    work = Evaluator(model=reduced.model.grouped(), recipe=reduced.trainer.recipe).with_median(0)
+    work = Evaluator(model=reduced.model.grouped(), builder=reduced.trainer.builder).with_median(0)
     errors = []
     for sample in range(4):
         model, found, _ = work.solved(sample)
         for load, variant in enumerate(found):
             index = (ensemble.training + sample) * ensemble.loads + load
-            laws, forces, _ = work.recipe.laws(index)
+            laws, forces, _ = work.builder.laws(index)
             scales = dict(zip(ensemble.varied_parts, model.scales, strict=True))
             structure = reduced.trainer.structure
             materials = {

@@ -190,7 +190,7 @@ def test_groups_of_points_give_the_same_answers(trained, monkeypatch, friction):
     """Groups give starts, tangents and the span of the modes, and no answer: those stay, with sliding as well."""
     from faying.reduction import reduced
 
-    monkeypatch.setattr(reduced, "MANY", 2)
+    monkeypatch.setattr(reduced, "GROUPED_FROM", 2)
     model = trained[1].model
     grouped = model.grouped()
     static = grouped.groups[0][0]
@@ -211,7 +211,7 @@ def test_secants_end_in_the_balance_that_newton_finds(trained, monkeypatch, fric
     """From a start far off and from a near one; where they give up, Newton is left to answer."""
     from faying.reduction import reduced, secant
 
-    monkeypatch.setattr(reduced, "MANY", 2)
+    monkeypatch.setattr(reduced, "GROUPED_FROM", 2)
     model = trained[1].model
     laws, forces = [law(2.41, 1e-10)], np.array([900.0])
     exact = model.equilibrium(laws, forces, [friction])

@@ -78,11 +78,11 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(plan, done, tmp_path, mon
     calls = []
     real = module.evaluate
 
-    def stops(model, recipe, indices):
+    def stops(model, builder, indices):
         calls.append(list(indices))
         if len(calls) == 2:
             raise KeyboardInterrupt
-        return real(model, recipe, indices)
+        return real(model, builder, indices)
 
     monkeypatch.setattr(module, "evaluate", stops)
     with pytest.raises(KeyboardInterrupt):
@@ -103,11 +103,11 @@ def test_what_an_interruption_changes(plan, tmp_path, monkeypatch):
     real, calls = module.evaluate, []
     whole = sweep(plan, axes(), tmp_path / "whole.nc")
 
-    def stops(model, recipe, indices):
+    def stops(model, builder, indices):
         calls.append(list(indices))
         if len(calls) == 3:
             raise KeyboardInterrupt
-        return real(model, recipe, indices)
+        return real(model, builder, indices)
 
     monkeypatch.setattr(module, "evaluate", stops)
     with pytest.raises(KeyboardInterrupt):
@@ -129,12 +129,12 @@ def test_two_sweeps_into_one_file(plan, tmp_path, monkeypatch):
 
     real = module.evaluate
 
-    def meanwhile(model, recipe, indices):
+    def meanwhile(model, builder, indices):
         monkeypatch.setattr(module, "evaluate", second)
         with pytest.raises(faying.InputError, match="another sweep is writing to .*out.nc.part; wait for it"):
             sweep(plan, axes(), tmp_path / "out.nc")
         monkeypatch.setattr(module, "evaluate", meanwhile)
-        return real(model, recipe, indices)
+        return real(model, builder, indices)
 
     monkeypatch.setattr(module, "evaluate", meanwhile)
     assert sweep(plan, axes(), tmp_path / "out.nc").path.is_file()
@@ -264,10 +264,10 @@ def test_a_sweep_whose_middle_has_no_answer(plan, tmp_path, monkeypatch):
     """The bases begin where there is an answer; the rest is NaN and told."""
     made = VariantBuilder.laws
 
-    def some(recipe, index):
-        if recipe.design.point(index).forces[0] > 3e3:
+    def some(builder, index):
+        if builder.design.point(index).forces[0] > 3e3:
             raise faying.InputError("no law here")
-        return made(recipe, index)
+        return made(builder, index)
 
     monkeypatch.setattr(VariantBuilder, "laws", some)
     swept = sweep(plan, axes("bolt.preload=2 kN,4 kN"), tmp_path / "out.nc")

@@ -59,7 +59,7 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
         seat_pressure=forces / [_least_area(structure, index) for index in range(len(bolts))],
         seat_limit=np.array([_limit(structure, index) for index in range(len(bolts))]),
         embedding=embedding,
-        embedding_loss=_lost(structure, found, embedding) / (bolt + members),
+        embedding_loss=_embedding_of(structure, found, embedding) / (bolt + members),
         embedding_guide=guide,
         embedding_guide_loss=guide / (bolt + members),
     )
@@ -111,7 +111,7 @@ def _embedding(structure: Structure, found: Clamping, state: LoadedCase) -> Arra
     return out
 
 
-def _lost(structure: Structure, found: Sequence[Clamping], embedding: Array) -> Array:
+def _embedding_of(structure: Structure, found: Sequence[Clamping], embedding: Array) -> Array:
     """Sum (2, loads, bolts) [m] over the joints that carry a bolt's force; NaN where one of them predicts nothing."""
     weights = [joint.interface.weights for joint in structure.joints]
     carried = np.array(

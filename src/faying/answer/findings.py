@@ -15,7 +15,7 @@ from faying.notes import Note, percent
 from faying.units import load_text
 
 FALL = 1e-6  # relative: a smaller fall is none
-FAR = 2.0  # factor between a law and the exact contact that is noted
+NOTED_RATIO = 2.0  # factor between a law and the exact contact that is noted
 
 
 def falling(case: Case, states: Sequence[LoadedCase]) -> Iterator[Note]:
@@ -67,7 +67,7 @@ def against_exact_contact(case: Case, state: LoadedCase) -> Iterator[Note]:
             if not isinstance(law, HalfSpace):
                 exact = mates.law("half-space")
                 ratio = stiffness_at(law, mean) / stiffness_at(exact, mean)
-                if not 1 / FAR <= ratio <= FAR:
+                if not 1 / NOTED_RATIO <= ratio <= NOTED_RATIO:
                     text = f"{at}: k_n of {law.name} is {ratio:.2g} times that of the half-space contact of its scan"
                     yield Note(code="far-from-exact", joint=joint.name, text=text)
             given = chosen.given if chosen.kind.label == law.name else {}

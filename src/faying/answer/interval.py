@@ -18,7 +18,7 @@ from faying.notes import Note
 from faying.result.interval import Interval
 from faying.typing import Array
 
-FAR = 2.0  # factor between measured stiffness and a law that is noted
+NOTED_RATIO = 2.0  # factor between measured stiffness and a law that is noted
 
 
 def intervals(
@@ -78,7 +78,7 @@ def law_notes(case: Case) -> Iterator[Note]:
     laws = [joint.law for joint in case.structure.joints]
     for joint, law, factors in zip(case.study.joints, laws, law_factors(case), strict=True):
         given = f"joint.{joint.name}.stiffness" in known or "joint.stiffness" in known
-        if not (given or 1 / FAR <= factors[1] <= FAR):
+        if not (given or 1 / NOTED_RATIO <= factors[1] <= NOTED_RATIO):
             found.setdefault((law.model.name, factors), []).append(joint.name)
     for (name, (low, middle, high)), names in found.items():
         text = (

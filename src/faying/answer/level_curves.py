@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 EACH_DECADE = 6  # levels
-MOST_DRAWN = 10  # curves in one panel
+MAX_CURVES = 10  # curves in one panel
 
 
 @checked_call
@@ -83,7 +83,7 @@ class LevelCurves(Summary):
             The axes.
         """
         axes = axes_of(ax, 2, width=COLUMN, height=2.9)
-        count = min(self.frequencies.shape[1], MOST_DRAWN)
+        count = min(self.frequencies.shape[1], MAX_CURVES)
         for mode in range(count):
             look: dict[str, Any] = {
                 "color": colour(mode),

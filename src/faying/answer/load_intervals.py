@@ -26,7 +26,7 @@ from faying.typing import Array
 END = 0.05  # probability below the lower end of an input
 SIGMAS = 1.6449  # standard deviations of a normal distribution to that end
 ROUGH = 0.1  # departure of the check from first order, over the answer, from which there is a note
-LEAST = 1e-3  # use of friction: of less, which is counted as this, the margin has no width
+MIN_FRICTION_USE = 1e-3  # use of friction: of less, which is counted as this, the margin has no width
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,12 +108,17 @@ def _answers(found: LoadCases) -> list[Array]:
     """What has an interval: force of bolts, log of the use of friction in joints and under heads, share that opens."""
     slip = found.friction_needed_worst / found.friction
     head = found.head_friction_needed / found.head_friction
-    return [found.bolt_force, np.log(np.maximum(slip, LEAST)), np.log(np.maximum(head, LEAST)), found.opened]
+    return [
+        found.bolt_force,
+        np.log(np.maximum(slip, MIN_FRICTION_USE)),
+        np.log(np.maximum(head, MIN_FRICTION_USE)),
+        found.opened,
+    ]
 
 
 def _use_factor(use: Array) -> Array:
     """1, or a use of friction over the least one of which the logarithm is taken [-]."""
-    return np.asarray(np.minimum(use / LEAST, 1.0))
+    return np.asarray(np.minimum(use / MIN_FRICTION_USE, 1.0))
 
 
 def _moved(

@@ -10,9 +10,9 @@ from faying.result import Result
 from faying.study.study import Study
 from faying.units import si
 
-MOST_RUNS = 5  # of one study: each takes several times the one before
+MAX_RUNS = 5  # of one study: each takes several times the one before
 AT_ONCE = 0.5  # least ratio of two sizes: an estimate on a coarse mesh may be too large
-AT_LEAST = 0.85  # greatest ratio of two sizes, so that each run gains something
+MAX_SIZE_RATIO = 0.85  # greatest ratio of two sizes, so that each run gains something
 RANGE = 1e-5, 0.1  # tolerances that make sense: below it rounding, above it no answer
 
 
@@ -48,13 +48,13 @@ def refined(study: Study, tolerance: float, run: Callable[[Study], Result]) -> R
             "program that it comes from, or give geometry.step"
         )
     study = replace(study, modes=replace(study.modes, intervals=True))
-    for number in range(1, MOST_RUNS + 1):
+    for number in range(1, MAX_RUNS + 1):
         result = run(study)
         error = 0.0 if result.mesh_error is None else float(result.mesh_error.max())
-        if error <= tolerance or number == MOST_RUNS:
+        if error <= tolerance or number == MAX_RUNS:
             break
-        study = _finer(study, min(max(size_for(1.0, error, tolerance), AT_ONCE), AT_LEAST))
-    words = "is" if error <= tolerance else f"after {MOST_RUNS} meshes is still"
+        study = _finer(study, min(max(size_for(1.0, error, tolerance), AT_ONCE), MAX_SIZE_RATIO))
+    words = "is" if error <= tolerance else f"after {MAX_RUNS} meshes is still"
     text = (
         f"elements of {1e3 * study.geometry.size:.3g} mm, and {number} mesh{'es' * (number > 1)}, for --refine: the "
         f"estimated error of the mesh {words} {100 * error:.2g} % at most, where {100 * tolerance:.2g} % was asked"

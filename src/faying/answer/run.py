@@ -326,9 +326,9 @@ def _at_points(states: Sequence[LoadedCase]) -> dict[str, Any]:
 
 def _bonded_above_range(states: Sequence[LoadedCase], lossless: bool) -> dict[str, Any]:
     """Frequencies and loss factors with what is beyond the end of a law bonded, where anything is at any load."""
-    if all(s.beyond is None for s in states):
+    if all(s.above_range is None for s in states):
         return {}
-    losses = [(s.beyond or s.damped).loss_factors for s in states]
+    losses = [(s.above_range or s.damped).loss_factors for s in states]
     return {
         "above_range_frequencies": np.stack([s.bonded_frequencies for s in states]),
         "above_range_loss_factors": np.stack([np.where(lossless, np.nan, loss) for loss in losses]),

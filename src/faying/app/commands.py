@@ -17,7 +17,7 @@ from faying.errors import InputError
 PROGRAM = (sys.executable, "-m", "faying")
 PATIENCE = 600.0  # s that a short command may take
 GRACE = 10.0  # s between asking a job to stop and ending it
-KEPT = 200  # lines of a job's words
+MAX_LINES = 200  # lines of a job's words
 
 
 def _environment() -> dict[str, str]:
@@ -93,7 +93,7 @@ class Job:
                 line = raw.decode("utf-8", errors="replace").rstrip()
                 event = _event(line) if which == "err" else None
                 if event is None:
-                    self.words = [*self.words, line][-KEPT:]
+                    self.words = [*self.words, line][-MAX_LINES:]
                 else:
                     self.progress = event
 

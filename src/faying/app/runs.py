@@ -19,8 +19,8 @@ from faying.setup.edit import written
 from faying.setup.lines import KeyPath, name_of
 from faying.units import load_text
 
-MOST = 8  # results that are kept
-MOST_BYTES = 2 << 30  # that they may have together
+MAX_RUNS = 8  # results that are kept
+MAX_BYTES = 2 << 30  # that they may have together
 NAME = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{8}")
 
 
@@ -60,7 +60,7 @@ class Runs:
         size = 0
         for k, name in enumerate(self.names()):
             size += self._file(name).stat().st_size
-            if k and (k >= MOST or size > MOST_BYTES):
+            if k and (k >= MAX_RUNS or size > MAX_BYTES):
                 self._file(name).unlink()
 
     def names(self) -> list[str]:

@@ -18,8 +18,8 @@ from faying.surface.spectrum import Spectrum, spectrum
 from faying.typing import Array, Index
 from faying.units import lengths
 
-MOST = 360  # points of a map along each side
-MOST_OF_LINE = 1200  # points of a line
+MAX_MAP_POINTS = 360  # points of a map along each side
+MAX_LINE_POINTS = 1200  # points of a line
 MISSING = 255  # in the bytes of a map
 Window = tuple[float, float, float, float]
 
@@ -154,7 +154,7 @@ class OpenScan:
         for low, high, count in ((x0, x1, columns), (y0, y1, rows)):
             first = min(int(low * count), count - 1)
             last = max(int(np.ceil(high * count - 1e-9)), first + 1)
-            found.append(np.linspace(first, last, min(MOST, last - first) + 1).astype(int))
+            found.append(np.linspace(first, last, min(MAX_MAP_POINTS, last - first) + 1).astype(int))
         ends = [found[0][0] * dx, found[1][0] * dy, found[0][-1] * dx, found[1][-1] * dy]
         return (found[0], found[1]), [float(one) for one in ends]
 
@@ -187,10 +187,10 @@ def _index(share: float, count: int) -> int:
 
 def _outline(values: Array) -> Index:
     """Which points are drawn: all where they are few, else the least and the greatest of each group."""
-    if len(values) <= MOST_OF_LINE:
+    if len(values) <= MAX_LINE_POINTS:
         return np.arange(len(values))
     keep: list[int] = []
-    for group in np.array_split(np.arange(len(values)), MOST_OF_LINE // 2):
+    for group in np.array_split(np.arange(len(values)), MAX_LINE_POINTS // 2):
         part = values[group]
         if np.isnan(part).all():
             keep.append(int(group[0]))

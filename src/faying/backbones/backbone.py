@@ -40,12 +40,12 @@ from faying.units import in_mm
 
 EXTRA_MODES = 14  # real modes beyond the one that is followed, in its basis
 SPRINGS = 32  # of the law's curve at a point
-FEW = 16  # springs with which the basis is trained
+TRAINING_SPRINGS = 16  # springs with which the basis is trained
 SAMPLES = 64  # instants of a cycle
 TRAINED = 2.5  # decades below the last level in which the basis is trained,
 EACH = 0.5  # in steps of so many
 SPENT = 0.05  # residual, in energy, at which a basis is spent
-STILL = 1e-3  # of the greatest motion: a point that moves less says nothing of the mode
+MIN_MOTION = 1e-3  # of the greatest motion: a point that moves less says nothing of the mode
 
 STEPS = 1000  # of its progress
 
@@ -378,7 +378,7 @@ class _Prepared:
         _, _, observer = self.observed()
         levels = self.choice.amplitude[1] * 10 ** -np.arange(0.0, TRAINED + EACH / 2, EACH)[::-1]
         self.basis.train(
-            self.laws(friction, FEW),
+            self.laws(friction, TRAINING_SPRINGS),
             lambda epmc: [level / epmc.level_of(1.0) for level in levels],
             harmonics=min(self.choice.harmonics, 2),
             samples=SAMPLES // 2,
@@ -392,7 +392,7 @@ class _Prepared:
         size = np.linalg.norm(shape, axis=1)
         at = self.choice.at
         node = int(np.argmax(size)) if at is None else nearest_node(mesh, at, "point of the backbone")
-        if size[node] < STILL * size.max():
+        if size[node] < MIN_MOTION * size.max():
             raise InputError(
                 f"mode {self.choice.mode} hardly moves at this point ({size[node] / size.max():.1e} of its greatest "
                 f"motion); give another one, such as {in_mm(mesh.points[np.argmax(size)])}, where it moves most"

@@ -89,10 +89,10 @@ class Case:
         for _, what, point in named_points(study):
             on_structure(what, point, structure.mesh)
         notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
-        told = {note.text for note in notes}
+        known = {note.text for note in notes}
         tables = [file for file in study.files if file != study.geometry.file]  # readers of meshes look for themselves
         ends = [text for file in tables for text in end_of(file)]
-        notes += [Note(code="file-end", text=text) for text in ends if text not in told]
+        notes += [Note(code="file-end", text=text) for text in ends if text not in known]
         size = structure.mesh.size
         if not SIZES[0] <= size <= SIZES[1]:
             text = (

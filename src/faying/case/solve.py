@@ -35,7 +35,7 @@ class LoadedCase:
         springs: stiffness and loss of each joint at its points.
         modes, damped: real modes with the springs, and complex modes with their loss.
         response: what [response] asks for; test_response: that at the points of a hammer test.
-        beyond: what bonding the points beyond the end of their law makes of the modes; None where there are none.
+        above_range: what bonding the points beyond the end of their law makes of the modes; None where there are none.
         notes: where a law leaves its validity range, and the like.
         ends: frequencies [Hz] at 5 and 95 % of each doubt of the joints, by its name; None where none are asked for.
         levels: damping at levels of acceleration; None where none is asked for, or no joint can slip.
@@ -50,7 +50,7 @@ class LoadedCase:
     damped: DampedModes
     response: ResponseAtLoad | None
     test_response: FullResponse | None
-    beyond: AboveRange | None
+    above_range: AboveRange | None
     notes: tuple[Note, ...]
     outside_share: float
     above_range_share: float
@@ -65,7 +65,7 @@ class LoadedCase:
     @property
     def bonded_frequencies(self) -> Array:
         """Frequencies [Hz] (m,) with what is beyond the end of its law bonded."""
-        return self.damped.frequencies if self.beyond is None else self.beyond.frequencies
+        return self.damped.frequencies if self.above_range is None else self.above_range.frequencies
 
 
 def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges: bool = True) -> LoadedCase:
@@ -93,7 +93,7 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
         loss=found.loss,
     )
     response, test_response, notes = _responses(case, number, loaded, progress)
-    beyond = bonded_above_range(case, load, springs, damped)
+    above_range = bonded_above_range(case, load, springs, damped)
     return LoadedCase(
         load=load,
         ends=ends_of(case, preload, engine) if ranges else None,
@@ -104,10 +104,10 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
         damped=damped,
         response=response,
         test_response=test_response,
-        beyond=beyond,
+        above_range=above_range,
         notes=(
             *notes,
-            *(() if beyond is None else beyond.notes),
+            *(() if above_range is None else above_range.notes),
             *law_notes(structure, preload, load),
             *pressure_notes(structure, preload.pressures, load),
         ),

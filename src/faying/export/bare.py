@@ -14,7 +14,7 @@ from faying.numerics.memory import check_modes
 from faying.numerics.modes import lowest_modes
 
 SPARE = 6  # modes beyond those asked for, for the basis of the complex ones
-STILL = 1e-9  # of the greatest energy of a rigid motion under an equal diagonal: below it nothing resists
+MIN_RESISTANCE = 1e-9  # of the greatest energy of a rigid motion under an equal diagonal: below it nothing resists
 
 
 @checked_call
@@ -51,7 +51,7 @@ def modes_with_joint(
     K, C = bare + pairs.matrix(), pairs.matrix(pairs.loss)
     rigid = rigid_motions(mesh.points)
     energy = np.einsum("ij,ij->j", rigid, K @ rigid)
-    still = int(np.count_nonzero(energy < STILL * np.einsum("ij,i,ij->j", rigid, K.diagonal(), rigid)))
+    still = int(np.count_nonzero(energy < MIN_RESISTANCE * np.einsum("ij,i,ij->j", rigid, K.diagonal(), rigid)))
     if still not in (0, 6):
         raise InputError(
             f"the matrices leave {still} of the six rigid motions free; take them from the model without supports, or "

@@ -15,7 +15,7 @@ from faying.study.keys.solution import ResponseChoice
 from faying.typing import Array
 from faying.units import load_text
 
-MOST_POINTS = 400
+MAX_POINTS = 400
 TEST_FILES = ("test_modes.uff", "test_frf.uff")
 
 
@@ -130,7 +130,7 @@ def _frf(response: Receptance, labels: dict[tuple[float, ...], int]) -> FRF:
 
 
 def _spread(points: Array, first: list[int]) -> list[int]:
-    """`first`, then points each as far as can be from all before it, up to MOST_POINTS in all.
+    """`first`, then points each as far as can be from all before it, up to MAX_POINTS in all.
 
     Points that coincide with another, as nodes of two faces in a joint do, are left out: a position would not tell
     which of the two is meant.
@@ -143,7 +143,7 @@ def _spread(points: Array, first: list[int]) -> list[int]:
     chosen = list(first) or [int(np.argmin(np.where(single, points @ [1.0, 1.1, 1.2], np.inf)))]
     distance = np.min([np.linalg.norm(points - points[k], axis=1) for k in chosen], axis=0)
     distance[~single] = 0.0
-    while len(chosen) < MOST_POINTS and distance.max() > 0:
+    while len(chosen) < MAX_POINTS and distance.max() > 0:
         chosen.append(int(distance.argmax()))
         distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
     return chosen

@@ -6,7 +6,7 @@ from faying.errors import InputError
 from faying.typing import Array
 
 NEIGHBOURS = 8
-FEWEST_POINTS = 16  # below which neighbours say nothing of a point
+MIN_POINTS = 16  # below which neighbours say nothing of a point
 SCATTERS = 20.0  # robust standard deviations of the difference from the neighbours' median
 RANGES = 5.0  # times the range of the neighbours
 SPANS = 3.0  # times the range of all heights but the outer 5 % on both sides
@@ -26,7 +26,7 @@ def refuse_lonely(places: Array, heights: Array, name: str) -> None:
     good = np.isfinite(heights) & np.isfinite(places).all(axis=1)
     rows = np.flatnonzero(good)
     xy, z = places[good], heights[good]
-    if len(z) < FEWEST_POINTS or np.ptp(z) == 0:
+    if len(z) < MIN_POINTS or np.ptp(z) == 0:
         return
     base = np.column_stack([np.ones(len(z)), xy - xy.mean(axis=0)])
     low, high = np.quantile(z, [0.05, 0.95])

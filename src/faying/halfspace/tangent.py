@@ -15,7 +15,7 @@ from faying.typing import AnyArray, Array, Mask
 
 PASSES = 12
 ENOUGH = 1e-6  # of the compliance: error at which no further pass is made; a pass nearly squares it
-MARGIN = 3.0  # error over what the preconditioner says of it; seen: .5 to 1.33
+MARGIN = 3.0  # error over what the preconditioner says of it; seen: 0.5 to 1.33
 
 
 @final

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from xarray import DataTree
 
 LEVELS = (0.05, 0.5, 0.95)
-MOST_PARAMETERS = 5  # that a summary has a line for
+MAX_PARAMETERS = 5  # that a summary has a line for
 
 
 @final
@@ -82,7 +82,7 @@ class IdentificationRecord(Recorded):
         used = int(self.used.sum())
         head = f"Identification: {len(self.names)} parameters from {used} measured frequencies; `.table()` has all"
         rows = {"parameters": "5 % | 50 % | 95 %, sd over that of the prior"}
-        shown = len(self.names) if len(self.names) <= MOST_PARAMETERS else MOST_PARAMETERS - 1
+        shown = len(self.names) if len(self.names) <= MAX_PARAMETERS else MAX_PARAMETERS - 1
         columns = zip(self.names[:shown], self.units, self.quantiles().T, self.posterior_contraction, strict=False)
         for name, unit, row, share in columns:
             cells = " | ".join(show(v, unit) if unit else f"{v:.4g}" for v in row)

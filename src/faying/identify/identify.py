@@ -29,7 +29,7 @@ from faying.identify.sampling.tempering import Tempered, temper
 from faying.progress import Report
 from faying.typing import Array, Mask
 
-FEWEST, MOST = 256, 1024  # evaluations over the priors, where not given
+MIN_EVALUATIONS, MAX_EVALUATIONS = 256, 1024  # evaluations over the priors, where not given
 CHECKS = 50  # points of the posterior at which the surrogate is compared with the model
 ROUNDS = 3  # most times that the surrogate is drawn closer
 WORSE = 2.0  # over the leave-one-out error: a surrogate that is rough
@@ -139,7 +139,7 @@ def _what_counts(test: Array, loads: Array, leave_out: Sequence[int]) -> tuple[M
 
 def points_for(size: int) -> int:
     """How many points of the priors: a power of 2 that has four for each coefficient of a quadratic."""
-    return int(min(max(FEWEST, 2 ** ceil(log2(2 * (size + 1) * (size + 2)))), MOST))
+    return int(min(max(MIN_EVALUATIONS, 2 ** ceil(log2(2 * (size + 1) * (size + 2)))), MAX_EVALUATIONS))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

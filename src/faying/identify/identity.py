@@ -17,7 +17,7 @@ from faying.sweeps.work import Rows
 from faying.typing import Array, Index
 
 LIKE = 0.5  # MAC with the median's mode below which a mode has no name
-NEAREST, FEWEST = 0.1, 8  # share of the samples, and their number, that say which modes are the test's
+NEAREST, MIN_SAMPLES = 0.1, 8  # share of the samples, and their number, that say which modes are the test's
 
 
 def named(reference: Sequence[Any], shapes: Sequence[Any], mass: Array) -> Index:
@@ -49,7 +49,7 @@ def paired_modes(test: Array, rows: Rows) -> Index:
         all_names.append(tuple(modes.astype(np.int64).tolist()))
     if not misfits:
         return np.full(test.shape[1], -1)
-    nearest = np.argsort(misfits, kind="stable")[: max(FEWEST, int(NEAREST * len(misfits)))]
+    nearest = np.argsort(misfits, kind="stable")[: max(MIN_SAMPLES, int(NEAREST * len(misfits)))]
     votes = Counter(all_names[k] for k in nearest)
     return np.array(votes.most_common(1)[0][0], dtype=np.int64)
 

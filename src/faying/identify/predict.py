@@ -26,7 +26,7 @@ from faying.study.study import Study
 from faying.sweeps.work import Rows
 from faying.typing import Array
 
-FEWEST, MOST = 8, 1_000_000  # samples
+MIN_SAMPLES, MAX_SAMPLES = 8, 1_000_000  # samples
 ABOVE_RANGE = 0.1  # share of the contact above the end of the law from which a sample is noted
 TOLERANCE = 1e-3  # relative error of a frequency by the bases from which it is noted
 MOVED = 0.1  # of the distance from 5 to 95 % that half of the samples may move either by
@@ -92,8 +92,10 @@ def predict(
 
 def check(study: Study, samples: int, seed: int) -> None:
     """Raise InputError for counts that make no prediction, and for studies that bases cannot hold."""
-    if isinstance(samples, bool) or not isinstance(samples, int) or not FEWEST <= samples <= MOST:
-        raise InputError(f"samples = {samples!r} should be a whole number from {FEWEST} to {MOST:,}, for example 1024")
+    if isinstance(samples, bool) or not isinstance(samples, int) or not MIN_SAMPLES <= samples <= MAX_SAMPLES:
+        raise InputError(
+            f"samples = {samples!r} should be a whole number from {MIN_SAMPLES} to {MAX_SAMPLES:,}, for example 1024"
+        )
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError(f"seed = {seed!r} should be a whole number of 0 or more")
     if study.modes.damping == "viscous":

@@ -26,7 +26,7 @@ from faying.units import in_mm, load_text
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_INPUTS = 6  # of the scatter matrix
+MAX_INPUTS = 6  # of the scatter matrix
 
 
 @drawing
@@ -120,7 +120,7 @@ def scatter_matrix(found: PredictionRecord) -> Any:
     values, _ = found.observed
     frequencies = values[:, -1]
     modes = np.arange(min(3, frequencies.shape[1]))
-    order = np.argsort(np.nanmean(shares.total[modes], axis=0))[::-1][:MOST_INPUTS]
+    order = np.argsort(np.nanmean(shares.total[modes], axis=0))[::-1][:MAX_INPUTS]
     fig = new_figure(WIDE, 1.25 * len(modes) + 0.8)
     axes = fig.subplots(len(modes), len(order), sharex="col", sharey="row", squeeze=False)
     for row, mode in enumerate(modes):

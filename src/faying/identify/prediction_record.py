@@ -29,7 +29,7 @@ LEVELS = (0.05, 0.5, 0.95)
 # normal scores in the middle of equal shares of the probability, scaled to a variance of 1
 _MIDDLES = [NormalDist().inv_cdf((k + 0.5) / 25) for k in range(25)]
 SCORES = tuple(float(z / np.std(_MIDDLES)) for z in _MIDDLES)
-MOST_MODES = 5  # that a summary has a line for
+MAX_MODES = 5  # that a summary has a line for
 POINTS = 4096  # at which the shares of variance are taken
 
 
@@ -99,7 +99,7 @@ class PredictionRecord(Recorded):
         values, test = self.observed
         low, middle, high = _levels(self._with_discrepancy(values[self.sound][:, -1]), LEVELS)
         rows["frequencies"] = f"5 % | 50 % | 95 % at {load_texts(self.loads)[-1]}"
-        shown = min(len(middle), MOST_MODES)
+        shown = min(len(middle), MAX_MODES)
         for k in range(shown):
             measured = f", test {test[-1, k]:.2f} Hz" if np.isfinite(test[-1, k]) else ""
             rows[f"mode {k + 1}"] = f"{low[k]:.2f} | {middle[k]:.2f} | {high[k]:.2f} Hz{measured}"

@@ -13,8 +13,8 @@ from faying.typing import Array
 
 LEVEL = 0.9  # share of the repeats within the intervals
 REPEATS = 200  # of the bootstrap
-MOST_SHARE = 2.0  # a share of variance beyond it is not an error of sampling
-STILL = 1e-12  # relative range of an output that does not vary
+MAX_SHARE = 2.0  # a share of variance beyond it is not an error of sampling
+MIN_RANGE = 1e-12  # relative range of an output that does not vary
 
 
 @final
@@ -78,9 +78,9 @@ def shares(
     sobol_indices(func=outputs, n=count, dists=[_Quantile(p) for p in priors], method=method, rng=rng)
     repeats = rng.multinomial(count, np.full(count, 1 / count), size=REPEATS).astype(float)
     f_A, f_B, f_AB = kept
-    still = np.ptp(np.concatenate([f_A, f_B], axis=1), axis=1) <= STILL * np.max(greatest, axis=0)
+    still = np.ptp(np.concatenate([f_A, f_B], axis=1), axis=1) <= MIN_RANGE * np.max(greatest, axis=0)
     first, total = np.where(still[:, None], np.nan, _indices(f_A, f_B, f_AB, np.ones((1, count)))[:, 0])
-    if np.nanmax([first, total], initial=0.0) > MOST_SHARE:
+    if np.nanmax([first, total], initial=0.0) > MAX_SHARE:
         raise InputError(
             f"a share of {np.nanmax([first, total]):.0%} of the variance came out, where none is above 100 %: the "
             "points do not fill the ranges of the inputs; take more samples"

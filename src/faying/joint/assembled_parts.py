@@ -201,7 +201,7 @@ class AssembledParts:
 
     @cached_property
     def shift_frequency(self) -> float:
-        """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
+        """A frequency below the first elastic mode of any compact body of this size [Hz]: 0.02 c/size."""
         speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in self.materials.values()]
         return float(0.02 * max(speeds) / self.mesh.size)
 

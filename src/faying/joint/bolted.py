@@ -217,7 +217,7 @@ class BoltedStructure(Summary):
 
     @property
     def shift_frequency(self) -> float:
-        """A frequency below the first elastic mode of any compact body of this size [Hz]: .02 c/size."""
+        """A frequency below the first elastic mode of any compact body of this size [Hz]: 0.02 c/size."""
         return self._assembled.shift_frequency
 
     def solver(self, name: str | None = None) -> str | Factoriser:

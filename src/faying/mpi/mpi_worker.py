@@ -29,7 +29,7 @@ else:  # beside this file, which is run as a script
 GUARDS = 8  # vectors of the block beyond the modes that are wanted, 6 or more
 SEED = 20240611
 FIRST = 0.1  # of the tolerance: what the preconditioner estimates falls short of the error by about that much
-ATTEMPTS, MOST_STEPS = 4, 500
+ATTEMPTS, MAX_STEPS = 4, 500
 EXACT = 1e-12  # residual that is asked of a factorisation
 GAP = 0.3  # of the eigenvalue of the last mode, to the first beyond its block
 
@@ -61,7 +61,7 @@ class Worker:
         solver.setWhichEigenpairs(self.SLEPc.EPS.Which.TARGET_MAGNITUDE)
         solver.setTarget(0.0)
         solver.setDimensions(count)
-        solver.setTolerances(EXACT, MOST_STEPS)
+        solver.setTolerances(EXACT, MAX_STEPS)
         turned = solver.getST()
         turned.setType("sinvert")
         inner = turned.getKSP()
@@ -155,7 +155,7 @@ class Worker:
         solver.setType("cg")
         solver.setOperators(self.A)
         solver.setPC(self.multigrid)
-        solver.setTolerances(rtol=1e-2, max_it=MOST_STEPS)
+        solver.setTolerances(rtol=1e-2, max_it=MAX_STEPS)
         answer, short = self.A.createVecRight(), 1.0
         lowest = min(int(np.count_nonzero(values < 2 * shift)), count - 1)
         for number in {lowest, int(np.argmax(found.left[:count]))}:

@@ -118,19 +118,19 @@ def damped_near(
         at_joints = span.vectors[lossy] @ inner
         squared, root, mix = _eigen(np.abs(values[order]), at_joints.T @ (inside @ at_joints), count, kind)
         vectors = _combined(span.vectors, inner @ mix)
-        held, moved, lost = (_times(operator, vectors) for operator in (stiffness, mass, loss))
+        resisted, inertial, lossy_part = (_times(operator, vectors) for operator in (stiffness, mass, loss))
         if kind == "hysteretic":
-            miss = held + 1j * lost - moved * squared
+            miss = resisted + 1j * lossy_part - inertial * squared
         else:
-            miss = held + lost * root + moved * root**2
-        size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), moved).real
+            miss = resisted + lossy_part * root + inertial * root**2
+        size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), inertial).real
         error, correction = _measured(measure, miss, size, tolerance)
         if error.max() < tolerance:
             return DampedModes(
                 frequencies=_frequency(squared, root, kind),
                 loss_factors=_loss_factor(squared, root, kind),
                 error=error,
-                shapes=definite(vectors / np.sqrt(np.einsum("im,im->m", vectors, moved))),
+                shapes=definite(vectors / np.sqrt(np.einsum("im,im->m", vectors, inertial))),
             )
         if not _enrich(near, stiffness, correction, least=SLIGHT * tolerance):
             break

@@ -12,7 +12,7 @@ from faying.result.shape_names import part_and_axis
 from faying.typing import Array
 from faying.units import load_text
 
-LEAST_GAIN = 5e-3  # by how much narrower an interval gets [-], below which the table would say 0 %
+MIN_GAIN = 5e-3  # by how much narrower an interval gets [-], below which the table would say 0 %
 
 
 def answer(result: Result) -> Rows:
@@ -120,7 +120,7 @@ def narrowing(result: Result) -> Rows:
     found: list[tuple[float, list[str]]] = []
     for name, less in gains(interval).items():
         best = int(np.argmax(less))
-        if less[best] >= LEAST_GAIN:
+        if less[best] >= MIN_GAIN:
             cells = [f"{100 * float(np.median(less)):.0f}", f"{100 * less[best]:.0f} (mode {best + 1})"]
             found.append((float(np.mean(less)), [name, SCATTER[name].remedy, *cells]))
     found.sort(key=lambda one: -one[0])

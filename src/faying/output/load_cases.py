@@ -14,7 +14,7 @@ from faying.units import show
 
 WIDTH = 80
 CASES_IN_TABLE = 3  # cases in one table of frequencies
-MOST_MODES = 10  # that the table of frequencies has
+MAX_MODES = 10  # that the table of frequencies has
 SCOPE = (
     "Forces in N where no unit is given, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
     "bolt; Phi: change of the bolt's force over it, as found; M, V: bending moment of the bolt and force across it; "
@@ -99,7 +99,7 @@ def mode_rows(found: LoadCases, some: slice = slice(None)) -> Rows:
     if found.rest_frequency is None or found.frequency is None or found.frequency_change is None:
         return []
     rows: Rows = [["mode", "preload", *(_cut(name, 18) for name in found.cases[some])]]
-    for m, rest in enumerate(found.rest_frequency[:MOST_MODES]):
+    for m, rest in enumerate(found.rest_frequency[:MAX_MODES]):
         cells = [
             f"{f:.2f} {change:+.2%}"
             for f, change in zip(found.frequency[some, m], found.frequency_change[some, m], strict=True)

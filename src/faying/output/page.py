@@ -62,7 +62,7 @@ GREEK = {"delta": "δ", "Phi": "Φ"}
 BITMAPS = ("modes", "shapes")  # tens of thousands of polygons: a bitmap is smaller than their outlines
 
 
-MOST_COLUMNS = 9  # of a table on paper
+MAX_COLUMNS = 9  # of a table on paper
 LINKED = ("modes", "joints")  # tables whose columns a page's script counts
 _SYMBOL = re.compile(r"(?<![\w/.-])([A-Za-z]|delta|Phi)_([A-Za-z0-9]{1,4})(?![\w.])")
 
@@ -106,7 +106,7 @@ def table(rows: Rows, name: str = "", keys: int = 1) -> str:
         return _one_table(rows, name)
     rows, zero = without_zeros(rows, keys)
     others = len(rows[0]) - keys
-    count = -(-others // (MOST_COLUMNS - keys)) if len(rows[0]) > MOST_COLUMNS else 1
+    count = -(-others // (MAX_COLUMNS - keys)) if len(rows[0]) > MAX_COLUMNS else 1
     size = max(1, -(-others // count))
     parts = [
         _one_table([[*row[:keys], *row[first : first + size]] for row in rows], name)

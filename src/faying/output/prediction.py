@@ -13,7 +13,7 @@ from faying.units import in_mm, load_text
 
 WIDTH = 80  # columns of a terminal
 SHOWN = 0.03  # share of the variance from which an input is named
-MOST = 12  # accelerations in the table of backbones, but for the last
+MAX_ACCELERATIONS = 12  # accelerations in the table of backbones, but for the last
 POOR = 0.3  # leave-one-out error of the polynomial, over the scatter, from which shares of the variance say little
 
 
@@ -59,7 +59,7 @@ def backbones(found: Prediction) -> Rows:
     rows: Rows = [["a [m/s2]", "f [Hz]", "damping [%]", "curves"]]
     frequencies, damping = curves.quantiles(LEVELS)
     last = len(curves.acceleration) - 1
-    for k in sorted({*range(0, last, -(-last // MOST)), last}):
+    for k in sorted({*range(0, last, -(-last // MAX_ACCELERATIONS)), last}):
         cells = ["-", "-"]
         if curves.enough[k]:
             cells = [_three(frequencies[:, k]), " .. ".join(f"{100 * z:.3g}" for z in damping[:, k])]

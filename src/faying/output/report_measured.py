@@ -17,7 +17,7 @@ CAPTIONS = {
     "frf": "FRFs of the test and of the model, its full response or its elastic modes superposed, as the legend says.",
     "shapes": "Paired mode shapes: motion measured at the points of the test (left), the model's (right).",
 }
-MOST_FRFS = 4
+MAX_FRFS = 4
 
 
 @drawing
@@ -30,7 +30,7 @@ def figures(comparison: ModalComparison) -> dict[str, Any]:
     measured.mac_map(mac.add_subplot(), comparison)
     out = {"mac": mac}
     if comparison.frf is not None:
-        pairs = comparison.frf.measured[:MOST_FRFS]
+        pairs = comparison.frf.measured[:MAX_FRFS]
         fig = new_figure(WIDE, 2.3 * len(pairs))
         for k, (o, i) in enumerate(pairs):
             measured.frf_overlay(fig.add_subplot(len(pairs), 1, k + 1), comparison, o, i)
@@ -77,7 +77,7 @@ def _curves(comparison: ModalComparison) -> list[dict[str, Any]]:
             frf.frequency,
             {"test": frf.values[o, i], "model": model[o, i]},
         )
-        for o, i in frf.measured[:MOST_FRFS]
+        for o, i in frf.measured[:MAX_FRFS]
     ]
 
 

@@ -104,7 +104,7 @@ def _modes(result: Result) -> tuple[ReportSection, ...]:
         ),
         ReportSection(
             name="beyond",
-            rows=table.beyond(result),
+            rows=table.above_range(result),
             title="Above the end of a law: stiffness constant, and bonded",
         ),
         ReportSection(

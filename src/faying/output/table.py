@@ -20,8 +20,8 @@ from faying.units import load_text, show
 Rows = list[list[str]]
 FRACTAL = ["D", "95 % interval", "G", "95 % interval", "band", "implied Rq"]  # heads of `fractal`
 SHOWN = 2  # modes in the table of laws
-MOST_MEASURED = 12  # measured points in the table of a backbone
-LEAST_CHANGE = 5e-4  # per cent that three digits show
+MAX_MEASURED = 12  # measured points in the table of a backbone
+MIN_CHANGE = 5e-4  # per cent that three digits show
 SAME = 1e-4  # relative difference of two frequencies that is not shown
 
 
@@ -63,7 +63,7 @@ def damping(result: Result) -> Rows:
     assert result.level_frequencies is not None
     heads = [*(f"{level:g} m/s2 [%]" for level in result.levels), "change of f [%]"]
     change = 100 * (result.level_frequencies[-1, -1] / result.frequencies[-1] - 1)
-    words = [f"{one:+.3f}" if abs(one) >= LEAST_CHANGE else "0" for one in change]
+    words = [f"{one:+.3f}" if abs(one) >= MIN_CHANGE else "0" for one in change]
     levels = range(len(result.levels))
     return by_mode(heads, ([*(damping_at(result, k, j) for k in levels), word] for j, word in enumerate(words)))
 
@@ -82,7 +82,7 @@ def _five(value: float) -> str:
     return f"{value:.{max(0, 4 - floor(log10(value)))}f}" if value > 0 else f"{value:.2f}"
 
 
-def beyond(result: Result) -> Rows:
+def above_range(result: Result) -> Rows:
     """One row per mode: constant stiffness above the end of the law, and bonded there; empty where none is above."""
     if result.above_range_frequencies is None or result.above_range_loss_factors is None:
         return []
@@ -396,7 +396,7 @@ def _static_cycle(curve: Backbone, level: float) -> str:
 def backbone_measured(curve: Backbone) -> Rows:
     """Measured points beside the curve at the same amplitude, a dozen at most over their range."""
     order = np.argsort(curve.measured_acceleration)
-    shown = order[np.unique(np.linspace(0, len(order) - 1, min(len(order), MOST_MEASURED)).round().astype(int))]
+    shown = order[np.unique(np.linspace(0, len(order) - 1, min(len(order), MAX_MEASURED)).round().astype(int))]
     f, z = (values[shown] for values in curve.at_measured())
     measured_f, measured_z = curve.measured_frequency[shown], curve.measured_damping[shown]
     return in_columns(

@@ -6,8 +6,8 @@ from textwrap import wrap
 Rows = Sequence[Sequence[str]]
 WIDTH = 80  # columns of a terminal
 GAP = "  "
-MOST_KEPT = 2  # columns of names that each block repeats
-LEAST = 16  # columns that a folded cell has at least
+MAX_NAME_COLUMNS = 2  # columns of names that each block repeats
+MIN_WIDTH = 16  # columns that a folded cell has at least
 # heads of columns of names, which go to the left
 NAMED = ("preload", "source", "law", "joint", "part", "bolt", "method", "scan")
 
@@ -30,11 +30,11 @@ def text(rows: Rows, left: Sequence[int] | None = None, width: int = WIDTH) -> s
     if _total(plain) <= width:
         return _lines(rows, plain, names)
     folded = [max(*(len(row[k]) for row in rows[1:]), _word(rows[0][k]), 1) for k in range(len(rows[0]))]
-    words = [max(LEAST, *(_word(row[k]) for row in rows)) if k in names else plain[k] for k in range(len(plain))]
+    words = [max(MIN_WIDTH, *(_word(row[k]) for row in rows)) if k in names else plain[k] for k in range(len(plain))]
     whole = _narrowed(folded, words, width)
     if _total(whole) <= width:
         return _lines(rows, _widened(rows[0], whole, width), names)
-    kept = [k for k in range(MOST_KEPT) if all(i in names for i in range(k + 1))] or [0]
+    kept = [k for k in range(MAX_NAME_COLUMNS) if all(i in names for i in range(k + 1))] or [0]
     blocks: list[list[int]] = [[]]
     for k in range(len(kept), len(plain)):
         if blocks[-1] and _total([folded[i] for i in (*kept, *blocks[-1], k)]) > width:
@@ -44,7 +44,7 @@ def text(rows: Rows, left: Sequence[int] | None = None, width: int = WIDTH) -> s
     for block in blocks:
         columns = [*kept, *block]
         part = [[row[k] for k in columns] for row in rows]
-        least = [words[k] if k in names or len(columns) > len(kept) + 1 else LEAST for k in columns]
+        least = [words[k] if k in names or len(columns) > len(kept) + 1 else MIN_WIDTH for k in columns]
         widths = _widened(part[0], _narrowed([folded[k] for k in columns], least, width), width)
         out.append(_lines(part, widths, [i for i, k in enumerate(columns) if k in names]))
     return "\n\n".join(out)

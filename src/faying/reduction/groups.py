@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from faying.typing import Array, Index
 
 SIZE = 8  # most points of a group
-MOST = 0.95  # of the points: where fewer have springs, the others are left out
-SEEN = 6  # of the motions of a joint, strongest first, by which points are alike
+MIN_CLOSED_SHARE = 0.95  # of the points: where fewer have springs, the others are left out
+COMPARED_MOTIONS = 6  # of the motions of a joint, strongest first, by which points are alike
 
 
 def joint_stiffness(relative: Any, springs: Array) -> Array:
@@ -24,7 +24,7 @@ def joint_stiffness(relative: Any, springs: Array) -> Array:
     digits.
     """
     closed = np.flatnonzero(springs.any(axis=1))
-    if len(closed) < MOST * len(springs):
+    if len(closed) < MIN_CLOSED_SHARE * len(springs):
         # one copy, by rows of three, takes less than what it saves
         rooted = relative.reshape(len(springs), -1).take(closed, axis=0).reshape(-1, relative.shape[1])
         rooted *= np.sqrt(springs[closed]).astype(relative.dtype).reshape(-1, 1)
@@ -60,7 +60,7 @@ class Groups:
         """Group points of areas `weights` [m2] (q,) by their relative motion (3q, m): halves of halves."""
         motion = relative.reshape(len(weights), -1)
         moved = motion - motion.mean(axis=0)
-        seen = moved @ np.linalg.eigh(moved.T @ moved)[1][:, : -SEEN - 1 : -1]
+        seen = moved @ np.linalg.eigh(moved.T @ moved)[1][:, : -COMPARED_MOTIONS - 1 : -1]
         groups, left_over = [], [np.arange(len(weights))]
         while left_over:
             here = left_over.pop()

@@ -32,7 +32,7 @@ from faying.reduction.part_shares import PartShares, ReducedShares, Scales
 from faying.reduction.reduced import ReducedModel, ReducedMotion, Variant
 from faying.typing import Array
 
-FEW_STEPS = 60  # enrichments of one variant after which something else must be wrong
+MAX_ENRICHMENTS = 60  # enrichments of one variant after which something else must be wrong
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
 # the force balance enters a frequency through k(p), to first order; the modes enter by the square of their error
 STATIC_SHARE = 15.0
@@ -381,7 +381,7 @@ class Reduction:
         """Grow the basis for equilibrium until every variant is right to `tolerance` in energy; their equilibria."""
         found: dict[int, PreloadState] = {}
         poor, error = list(range(len(variants))), np.full(len(variants), np.inf)
-        for _ in range(FEW_STEPS):
+        for _ in range(MAX_ENRICHMENTS):
             residuals = []
             for k in poor:
                 one, start = variants[k], found[k].displacement if k in found else variants[k].start
@@ -398,12 +398,12 @@ class Reduction:
             self.static.add(answers[:, far])
             self.refresh()
         what = f"the preload wrong by {error.max():.1e}" if len(variants) == 1 else f"{len(poor)} equilibria wrong"
-        raise NotConverged(f"reduction: {FEW_STEPS} enrichments leave {what}; raise the tolerance")
+        raise NotConverged(f"reduction: {MAX_ENRICHMENTS} enrichments leave {what}; raise the tolerance")
 
     def _train_dynamic(self, variants: Sequence[Gapped], found: Sequence[PreloadState], tolerance: float) -> None:
         """Grow the basis for vibration until all modes of every variant are right; tolerance: of the eigenvalues."""
         poor: list[Any] = [np.arange(self.model.count)] * len(variants)
-        for _ in range(FEW_STEPS):
+        for _ in range(MAX_ENRICHMENTS):
             left = []
             for k, one in enumerate(variants):
                 if len(poor[k]):
@@ -428,7 +428,7 @@ class Reduction:
                 raise NotConverged(f"reduction: {what} and nothing improves them")
             self.refresh()
         raise NotConverged(
-            f"reduction: {FEW_STEPS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
+            f"reduction: {MAX_ENRICHMENTS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
         )
 
     def train(

@@ -25,10 +25,10 @@ _OF_JOINTS = ("weights", "gaps", "static_relative", "dynamic_relative")
 BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
 BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
 SPAN = 10  # modes in seven digits beyond those wanted, with which they span what the modes are sought in
-KEPT = 0.1  # of the force out of balance: a tangent that leaves less serves once more
+REUSE_BELOW = 0.1  # of the force out of balance: a tangent that leaves less serves once more
 SECANTS = 1e-7  # imbalance to which secants lead: frequencies are right to a tenth of that
-NEAR = 1e-2  # imbalance of the groups at which all points go on
-MANY = 400  # points of a joint from which groups pay
+GROUP_TOLERANCE = 1e-2  # imbalance of the groups at which all points go on
+GROUPED_FROM = 400  # points of a joint from which groups pay
 SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
 
 
@@ -130,7 +130,7 @@ class ReducedEquilibrium(Equilibrium):
         from scipy.linalg import LinAlgError, cho_factor
 
         size = float(np.linalg.norm(force))
-        falls, self._size = size < KEPT * self._size, size
+        falls, self._size = size < REUSE_BELOW * self._size, size
         if falls and self._tangent is not None:  # near the end the last tangent does as well
             step = yield force
             return step, 0
@@ -186,7 +186,7 @@ class ReducedModel:
     def grouped(self) -> "ReducedModel":
         """The same model with the points of large joints in groups: it gives the same answers sooner."""
         found = [
-            (Groups.of(w, static), Groups.of(w, dynamic)) if len(w) >= MANY else None
+            (Groups.of(w, static), Groups.of(w, dynamic)) if len(w) >= GROUPED_FROM else None
             for w, static, dynamic in zip(self.weights, self.static_relative, self.dynamic_relative, strict=True)
         ]
         return replace(self, groups=found)
@@ -255,10 +255,10 @@ class ReducedModel:
             secants = Secants(stiffness=self.matrices[0], joints=joints, friction=friction)
             all_grouped = all(motion.groups is not None for motion in motions)
             try:
-                near = secants.near(load, start, NEAR) if all_grouped else None
+                near = secants.near(load, start, GROUP_TOLERANCE) if all_grouped else None
                 if near is None:
                     groups = self._balance([motion.coarse for motion in motions], laws, friction)
-                    near = groups.solve(load, start=start, tolerance=NEAR).displacement
+                    near = groups.solve(load, start=start, tolerance=GROUP_TOLERANCE).displacement
                 start = near
                 found = secants.solve(load, start, tolerance) if all_grouped else None
                 if found is not None:
@@ -277,7 +277,7 @@ class ReducedModel:
         self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None
     ) -> PreloadState:
         """`equilibrium` where the basis grows and groups would not pay: secants from a start, with seven digits."""
-        if start is not None and min(map(len, self.weights)) >= MANY:
+        if start is not None and min(map(len, self.weights)) >= GROUPED_FROM:
             motions, load = self._motions(self.static_relative, 0), self.static_loads @ forces
             light = [replace(m, groups=None, light=m.relative.astype(np.float32)) for m in motions]
             secants = Secants(stiffness=self.matrices[0], joints=list(zip(light, laws, strict=True)), friction=friction)

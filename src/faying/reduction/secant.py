@@ -18,7 +18,7 @@ SLOW = 0.4  # of the imbalance, that a step leaves whose tangent is made anew
 NEWTON = 8  # steps of the groups after which a line search is due
 EVEN = 2  # times that joints of one pressure each are solved: the pressure is that of the last
 GROWN = 10.0  # times the least imbalance found, from which Newton is asked
-FAR = 0.2  # imbalance of a state whose tangent serves for one step
+FAR_IMBALANCE = 0.2  # imbalance of a state whose tangent serves for one step
 NO_START = 0.6  # imbalance of a start that is none
 AGAIN, FALLEN = 0.05, 0.03  # imbalance of a start whose tangent is that of groups, and where the one of points is made
 IN_FULL = 1e-3  # imbalance from which the balance is found in full once; what changes after that needs seven digits
@@ -82,8 +82,8 @@ class Secants:
                 return None
             least, last, slow = min(least, size), size, not poor and len(past) > 1 and size > SLOW * last
             if answer is None or far or slow or (poor and size < FALLEN):
-                far = size > FAR
-                poor = answer is None and AGAIN < size <= FAR
+                far = size > FAR_IMBALANCE
+                poor = answer is None and AGAIN < size <= FAR_IMBALANCE
                 answer, past = self._tangent(here, rough=poor), []
                 if answer is None:
                     return None

@@ -20,7 +20,7 @@ from faying.units import in_mm, load_text
 if TYPE_CHECKING:
     pass
 
-MOST_POINTS = 6  # of a curve that a summary has a line for
+MAX_POINTS = 6  # of a curve that a summary has a line for
 DECAY = 200  # points of a ring-down
 SHORT = 1e-3  # step of the logarithm of the amplitude for the slope of the frequency
 
@@ -149,7 +149,7 @@ class BackboneRecord(Recorded):
         rest = f"{self.linear_frequency:.3f} Hz, damping ratio {self.rest_damping:.3g}, seen at {in_mm(self.at)}"
         rows = {"at rest": rest}
         count = len(self.acceleration)
-        for k in np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).round().astype(int)):
+        for k in np.unique(np.linspace(0, count - 1, min(count, MAX_POINTS)).round().astype(int)):
             rows[f"{self.acceleration[k]:.4g} m/s2"] = (
                 f"{self.frequency[k]:.3f} Hz, damping ratio {self.damping[k]:.3g}, slips on {self.slipping[k]:.0%}"
             )

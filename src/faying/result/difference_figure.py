@@ -10,7 +10,7 @@ from faying.style import SOFT, WIDE, colour, drawing, new_figure, plain_numbers,
 from faying.typing import Array
 
 MARKS = ("o", "s")
-MOST_TICKS = 12
+MAX_TICKS = 12
 
 
 @drawing
@@ -40,7 +40,7 @@ def differences(found: RunDifference, names: tuple[str, str] = ("first run", "se
     if np.nanmin(np.concatenate(found.loss_factors), initial=np.inf) > 0:
         axes[1].set_yscale("log")
         plain_numbers(axes[1].yaxis)
-    step = -(-len(places) // MOST_TICKS) or 1
+    step = -(-len(places) // MAX_TICKS) or 1
     for ax in axes[:2]:
         ax.set(xlabel="mode of the first run", xticks=places[::step], xticklabels=found.modes[::step, 0] + 1)
         ax.set_xlim(-0.6, len(places) - 0.4)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Kind = TypeVar("Kind")
 KEY = "variable"
-MOST_ARRAYS = 10  # that a summary has a line for
+MAX_ARRAYS = 10  # that a summary has a line for
 RECORD = "faying_record"  # attribute of a file: what it holds
 PRELOAD = "preload"  # numbers that belong to the labels of loads
 
@@ -113,7 +113,7 @@ class Recorded(Summary):
             for name, meta in declared(type(self)).items()
             if getattr(self, name) is not None
         }
-        return type(self).__name__, dict(list(rows.items())[:MOST_ARRAYS])
+        return type(self).__name__, dict(list(rows.items())[:MAX_ARRAYS])
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""

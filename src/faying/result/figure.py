@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 TEST_MARK: dict[str, Any] = {"mfc": "white", "mec": "black", "ms": 4.5, "mew": 1.1, "ls": "none"}
 FACE_FIELDS = {"pressure": ("pressure [MPa]", 1e6), "slip": ("slip [µm]", 1e-6)}
-NEAR = 1.0  # how far a bonded frequency may lie above the curves to be drawn, of the height of the curves
+BONDED_ROOM = 1.0  # how far a bonded frequency may lie above the curves to be drawn, of the height of the curves
 
 
 @drawing
@@ -157,7 +157,10 @@ def _against_preload(ax: Any, result: RunRecord, mode: int) -> None:
         if len(rows):
             ax.plot(load[rows], c.frequencies[rows, columns], "s", label=c.reference, **TEST_MARK)
     low, high = float(np.min(ends)), float(np.max(ends))
-    if high < result.bonded[mode] <= high + NEAR * max(high - low, 1e-3 * high) or low <= result.bonded[mode] <= high:
+    if (
+        high < result.bonded[mode] <= high + BONDED_ROOM * max(high - low, 1e-3 * high)
+        or low <= result.bonded[mode] <= high
+    ):
         ax.axhline(result.bonded[mode], color=SOFT, ls=":", lw=1.0, label="faces bonded")
     ax.set_title(f"mode {mode + 1}", pad=3)
     ax.grid(alpha=0.3)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from faying.typing import Array
 
 OF_PARTS = ("mesh", "structure", "mode")  # sources that no stiffness of a joint bounds
-LEAST_SQUARE = 1e-300  # where nothing moves a frequency
+MIN_SQUARE = 1e-300  # where nothing moves a frequency
 
 
 @final
@@ -59,7 +59,7 @@ class Interval:
     def shares(self) -> Array:
         """Share of each source in the square of the width (s, loads, modes) [-]; sums to 1."""
         squares = self._squares
-        return np.asarray(squares / np.maximum(squares.sum(axis=0), LEAST_SQUARE))
+        return np.asarray(squares / np.maximum(squares.sum(axis=0), MIN_SQUARE))
 
     def narrowed(self, left: Mapping[str, float]) -> "Interval":
         """The interval where sources are known better.

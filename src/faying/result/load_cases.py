@@ -18,7 +18,7 @@ from faying.units import show
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_CASES = 8  # that a summary has a line for
+MAX_CASES = 8  # that a summary has a line for
 ENOUGH = 0.01  # departure from the linear answer up to which superposition does
 MAPS = ("point",)  # dimensions of what only a file holds, not the JSON
 
@@ -176,12 +176,12 @@ class LoadCases(Recorded):
         head = f"Load cases of {self.title} at {show(self.preload, 'N')}: {len(self.bolts)} bolts, "
         head += f"{len(self.joints)} joint{'s' * (len(self.joints) > 1)}"
         rows = {}
-        for k, name in enumerate(self.cases[:MOST_CASES]):
+        for k, name in enumerate(self.cases[:MAX_CASES]):
             low, high = (show(float(one), "N") for one in (self.bolt_force[k].min(), self.bolt_force[k].max()))
             linear = "superposition holds" if self.superposes[k] else f"{self.superposition[k]:.0%} from superposition"
             rows[name] = f"bolts {low} to {high}, {self.opened[k].max():.1%} opens, {linear}"
-        if len(self.cases) > MOST_CASES:
-            rows["more cases"] = str(len(self.cases) - MOST_CASES)
+        if len(self.cases) > MAX_CASES:
+            rows["more cases"] = str(len(self.cases) - MAX_CASES)
         return head, rows
 
     def to_dict(self) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from faying.style import WIDE, drawing, new_panels
 if TYPE_CHECKING:
     pass
 
-MOST_PANELS = 12  # the preload, and cases
+MAX_PANELS = 12  # the preload, and cases
 COLUMNS = 3
 SMALL = 0.2  # size of the points of small panels, against those of one
 
@@ -19,7 +19,7 @@ SMALL = 0.2  # size of the points of small panels, against those of one
 @drawing
 def figure(found: LoadCases, joint: int = 0) -> Any:
     """Return the figure of the pressure on a joint, counted from 0, under the preload and under each case."""
-    cases: list[int | None] = [None, *range(min(len(found.cases), MOST_PANELS - 1))]
+    cases: list[int | None] = [None, *range(min(len(found.cases), MAX_PANELS - 1))]
     columns = min(COLUMNS, len(cases))
     fig = new_panels(columns, -(-len(cases) // columns), width=WIDE / COLUMNS, height=2.1)
     for ax in fig.axes[len(cases) :]:

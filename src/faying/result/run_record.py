@@ -23,7 +23,7 @@ from faying.text import csv_text, listed
 from faying.typing import Array, Complex, Index
 
 Point = tuple[float, float, float]
-MOST_LOADS, MOST_MODES = 4, 5  # that a summary has a column and a line for
+MAX_LOADS, MAX_MODES = 4, 5  # that a summary has a column and a line for
 MAPS = ("point", "node", "triangle", "mode_other")  # dimensions of what only a file holds, not the JSON
 
 
@@ -286,10 +286,10 @@ class RunRecord(Recorded):
         rows = {"joints": listed(self.joints) + (f" ({listed(filter(None, laws))})" if any(laws) else "")}
         rows["bolts"] = listed(self.bolts)
         rows |= {"dowels": listed(self.dowels)} if self.dowels else {}
-        few = list(range(len(self.loads))) if len(self.loads) <= MOST_LOADS else [0, len(self.loads) // 2, -1]
+        few = list(range(len(self.loads))) if len(self.loads) <= MAX_LOADS else [0, len(self.loads) // 2, -1]
         words = load_texts(self.loads)
         rows["frequencies"] = f"[Hz] free | {' | '.join(words[k] for k in few)} | bonded"
-        shown = len(self.free) if len(self.free) <= MOST_MODES else MOST_MODES - 1
+        shown = len(self.free) if len(self.free) <= MAX_MODES else MAX_MODES - 1
         for mode in range(shown):
             cells = (self.free[mode], *(self.frequencies[k, mode] for k in few), self.bonded[mode])
             rows[f"mode {mode + 1}"] = " | ".join(f"{value:8.2f}" for value in cells)

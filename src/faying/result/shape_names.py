@@ -6,7 +6,7 @@ from faying.result.run_record import RunRecord
 from faying.typing import Array
 
 BOTH = 0.6  # of the greater motion that the other parts must have for "all"
-LONG = 2.5  # times the next longest side: longer structures bend, twist and stretch
+SLENDER = 2.5  # times the next longest side: longer structures bend, twist and stretch
 SLICES = 16  # along a long structure
 MOSTLY = 0.7  # of the mean square motion that a word must account for
 
@@ -46,7 +46,7 @@ def long_shape(points: Array, shape: Array) -> str:
     extents = np.ptp(points, axis=0)
     along = int(np.argmax(extents))
     across = [k for k in range(3) if k != along]
-    if extents[along] < LONG * max(extents[across].max(), 1e-300):
+    if extents[along] < SLENDER * max(extents[across].max(), 1e-300):
         return ""
     slices = np.minimum((points[:, along] - points[:, along].min()) / extents[along] * SLICES, SLICES - 1).astype(int)
     energy, total = np.zeros(4), 0.0  # bending in two directions, stretch, torsion

@@ -16,7 +16,7 @@ from faying.study.keys.varied import MODEL, OWN, formed, swept
 from faying.study.study import Study
 from faying.sweeps.variation import StudyVariant, check_key
 
-MOST = 1_000_000  # points of a grid
+MAX_POINTS = 1_000_000  # points of a grid
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,9 +66,9 @@ def axis_of(text: str) -> Axis:
     words = given.split(":")
     if len(words) in (3, 4):
         count = words[2].strip()
-        if not count.isdigit() or not 2 <= int(count) <= MOST or words[3:] not in ([], ["log"]):
+        if not count.isdigit() or not 2 <= int(count) <= MAX_POINTS or words[3:] not in ([], ["log"]):
             raise InputError(
-                f"--set {text}: after the two ends comes a whole number from 2 to {MOST:,}, and log if wanted"
+                f"--set {text}: after the two ends comes a whole number from 2 to {MAX_POINTS:,}, and log if wanted"
             )
         first, last = (_number(parameter, word, key) for word in words[:2])
         if first == last or (words[3:] and min(first, last) <= 0):
@@ -107,8 +107,8 @@ class Grid:
         keys = [axis.key for axis in self.axes]
         if not keys or len(set(keys)) < len(keys):
             raise InputError(f"a sweep needs each axis once; --set gave {', '.join(keys) or 'none'}")
-        if self.size > MOST:
-            raise InputError(f"the axes have {self.size:,} combinations; a sweep takes up to {MOST:,}")
+        if self.size > MAX_POINTS:
+            raise InputError(f"the axes have {self.size:,} combinations; a sweep takes up to {MAX_POINTS:,}")
         for key in keys:
             check_key(self.study, key, models=MODEL in keys, where=f"--set {key}")
         if self.study.in_order:

@@ -18,7 +18,7 @@ from faying.sweeps.work import Rows, Work
 ANSWER = 10.0  # s that the cluster is given to answer
 LOOK = 1.0  # s between two looks at the cluster while nothing comes
 WAIT = 300.0  # s without a single worker after which the work is given up: a batch system takes its time to start one
-MOST_RANGES = 8  # of indices, in a message
+MAX_RANGES = 8  # of indices, in a message
 PACKAGES = ("faying", "numpy", "scipy")  # make the numbers, and read what is sent
 
 
@@ -194,8 +194,8 @@ def _ranges(chunks: Collection[Sequence[int]]) -> str:
     starts = sorted(i for i in indices if i - 1 not in indices)
     ends = sorted(i for i in indices if i + 1 not in indices)
     texts = [f"{a}" if a == b else f"{a} to {b}" for a, b in zip(starts, ends, strict=True)]
-    more = [f"and so on ({len(indices)} in all)"] if len(texts) > MOST_RANGES else []
-    return ", ".join([*texts[:MOST_RANGES], *more])
+    more = [f"and so on ({len(indices)} in all)"] if len(texts) > MAX_RANGES else []
+    return ", ".join([*texts[:MAX_RANGES], *more])
 
 
 def _check_versions(client: Any) -> None:

@@ -17,16 +17,16 @@ from faying.study.study import Study
 from faying.sweeps.axes import Axis, Grid
 from faying.sweeps.files import OF_MODES, Sweep, SweepStore
 from faying.sweeps.parallel import each
-from faying.sweeps.trainer import FAR, Trainer
+from faying.sweeps.trainer import REFINED_ABOVE, Trainer
 from faying.sweeps.variant_builder import VariantBuilder, contact_shares
 from faying.sweeps.work import rows_of
 from faying.typing import Array
 
 CHUNK = 25  # evaluations between two writings to disk
-MOST_LAWS = 100  # looked at before there is a mesh
+MAX_LAWS = 100  # looked at before there is a mesh
 
 
-def evaluate(model: ReducedModel, recipe: VariantBuilder, indices: Sequence[int]) -> dict[str, Array]:
+def evaluate(model: ReducedModel, builder: VariantBuilder, indices: Sequence[int]) -> dict[str, Array]:
     """Evaluate some points; rows of what the sweep stores, NaN where a point has no answer, and `reasons`."""
     weights, unknown = np.concatenate(model.weights), np.full(model.count, np.nan)
     start: Array | None = None
@@ -34,8 +34,8 @@ def evaluate(model: ReducedModel, recipe: VariantBuilder, indices: Sequence[int]
     def answer(index: int) -> dict[str, Any]:
         nonlocal start
         before, start = start, None  # a point without an answer starts no other
-        laws, forces, friction = recipe.laws(index)
-        found = recipe.model_at(model, index).evaluate(laws, forces, friction, before)
+        laws, forces, friction = builder.laws(index)
+        found = builder.model_at(model, index).evaluate(laws, forces, friction, before)
         start = found.preload.displacement
         open_share, above_range = contact_shares(weights, laws, found.preload.pressures)
         return {
@@ -95,11 +95,11 @@ def sweep(
         # within a chunk each point starts from the last; chunks are the same after an interruption, so the answers are
         path = grid.winding()
         chunks = [c for c in (path[i : i + CHUNK] for i in range(0, len(path), CHUNK)) if not store.done[c].all()]
-        work = partial(evaluate, model, trainer.recipe)
+        work = partial(evaluate, model, trainer.builder)
         for indices, rows in each(work, chunks, jobs, dask):
             store.keep(indices, rows)
             report("evaluations", int(store.done.sum()), grid.size)
-        model = _enriched(model, trainer, store, trainer.recipe)
+        model = _enriched(model, trainer, store, trainer.builder)
         unknowns = trainer.structure.mesh.unknowns
         return store.written(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
 
@@ -124,7 +124,7 @@ def _check_laws(grid: Grid) -> None:
     places = np.indices(grid.shape).reshape(len(grid.shape), -1)
     first = [k for k, axis in enumerate(grid.axes) if axis.key.startswith("bolt.")]
     fault: FayingError | None = None
-    for index in np.flatnonzero((places[first] == 0).all(axis=0))[:MOST_LAWS]:
+    for index in np.flatnonzero((places[first] == 0).all(axis=0))[:MAX_LAWS]:
         point = grid.point(int(index))
         try:
             checked_laws(point.study, point.surfaces)
@@ -145,10 +145,10 @@ def _check(study: Study, tolerance: float) -> None:
         raise InputError('a sweep takes springs per area; leave out springs = "per-node", or run studies one by one')
 
 
-def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, recipe: VariantBuilder) -> ReducedModel:
+def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, builder: VariantBuilder) -> ReducedModel:
     """Train on the points whose estimate is far beyond the tolerance, until none is left or nothing is gained."""
     for _ in range(20):
-        far = np.flatnonzero(store.rows["estimate"] > FAR * trainer.tolerance)
+        far = np.flatnonzero(store.rows["estimate"] > REFINED_ABOVE * trainer.tolerance)
         if not len(far):
             break
         worst = far[np.argsort(-store.rows["estimate"][far])][:4]
@@ -156,7 +156,7 @@ def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, recipe: 
         model = trainer.model(worst.tolist())
         store.keep_model(model)
         before = store.rows["estimate"][far].copy()
-        for indices, rows in each(partial(evaluate, model, recipe), [far.tolist()], 1, None):
+        for indices, rows in each(partial(evaluate, model, builder), [far.tolist()], 1, None):
             store.keep(indices, rows)
         if not np.any(store.rows["estimate"][far] < before):
             break

@@ -20,7 +20,7 @@ from faying.typing import Array
 CORNERS, RANDOM, CHECKS = 16, 8, 5  # variants trained on, and those that are looked at afterwards
 SPARE_MODES = 3  # trained beyond those wanted: a mode that comes down between the corners is in the basis then
 # the estimate is that of a basis a hundred times coarser; beyond this multiple of the tolerance a point is trained on
-FAR = 60.0
+REFINED_ABOVE = 60.0
 SLACK = 5.0  # times the tolerance: to which bases are trained where samples need them to grow
 SEED = 20241121
 
@@ -29,9 +29,9 @@ class Trainer:
     """Makes the bases when they are first needed, and enriches them at points of the design."""
 
     def __init__(
-        self, study: Study, structure: Structure, recipe: VariantBuilder, tolerance: float, report: Report
+        self, study: Study, structure: Structure, builder: VariantBuilder, tolerance: float, report: Report
     ) -> None:
-        self.study, self.structure, self.recipe, self.tolerance = study, structure, recipe, tolerance
+        self.study, self.structure, self.builder, self.tolerance = study, structure, builder, tolerance
         self.report = report
         self.reduction: Reduction | None = None
 
@@ -41,8 +41,8 @@ class Trainer:
         mesh = checked_mesh(study)
         pairs = tuple(materials_at(study, mesh, joint) for joint in study.joints)
         structure = structure_of(study, mesh, design.surfaces)
-        recipe = VariantBuilder(design=design, pairs=pairs, places=JointPlacement.all(structure, design))
-        return cls(study, structure, recipe, tolerance, report)
+        builder = VariantBuilder(design=design, pairs=pairs, places=JointPlacement.all(structure, design))
+        return cls(study, structure, builder, tolerance, report)
 
     def model(self, more: Sequence[int] = (), learn: Sequence[int] = ()) -> ReducedModel:
         """Return the bases as `trained` leaves them, for the modes that are wanted."""
@@ -53,7 +53,7 @@ class Trainer:
 
         learn: points, those of one sample one behind the other, to what these need the bases are compressed.
         """
-        design = self.recipe.design
+        design = self.builder.design
         generator = np.random.default_rng(SEED)
         if self.reduction is None:
             points = design.corners(CORNERS)
@@ -62,7 +62,7 @@ class Trainer:
             self._train(self.reduction, [*points, *more], "training")
             self.reduction.compress(self.tolerance)
             # a form changes which points touch: more of its grid is looked at
-            count = (3 if self.recipe.places else 1) * CHECKS
+            count = (3 if self.builder.places else 1) * CHECKS
             checks = generator.choice(design.size, min(count, design.size), replace=False).tolist()
             self._check(self.reduction, checks)
             if not learn:
@@ -82,7 +82,7 @@ class Trainer:
         )
 
     def _part_shares(self) -> PartShares | None:
-        parts = self.recipe.design.varied_parts
+        parts = self.builder.design.varied_parts
         return PartShares.of(self.structure, parts) if parts else None
 
     def _first_bases(self, points: Sequence[int]) -> Reduction:
@@ -91,9 +91,9 @@ class Trainer:
         for index in dict.fromkeys(points):
             self.report("reference solution", 0, 0)
             try:
-                laws, forces, _ = self.recipe.laws(index)
+                laws, forces, _ = self.builder.laws(index)
                 return Reduction.of(
-                    self.structure.with_joints(gaps=self.recipe.gaps(index)),
+                    self.structure.with_joints(gaps=self.builder.gaps(index)),
                     laws,
                     forces,
                     count=self.study.modes.count + SPARE_MODES,
@@ -113,11 +113,11 @@ class Trainer:
             self.report(f"{what} {number + 1}", 0, 0)
             try:
                 start = reduction.train(
-                    *self.recipe.laws(index),
+                    *self.builder.laws(index),
                     tolerance=slack * self.tolerance,
                     start=start,
-                    gaps=self.recipe.gaps(index),
-                    scales=self.recipe.scales(index),
+                    gaps=self.builder.gaps(index),
+                    scales=self.builder.scales(index),
                 )
             except FayingError as met:  # a point without an answer is reported when it is evaluated
                 fault = met
@@ -131,8 +131,8 @@ class Trainer:
         for index in points:
             self.report("compression", 0, 0)
             try:
-                laws, forces, friction = self.recipe.laws(index)
-                found = self.recipe.model_at(model, index).evaluate(laws, forces, friction, start)
+                laws, forces, friction = self.builder.laws(index)
+                found = self.builder.model_at(model, index).evaluate(laws, forces, friction, start)
             except FayingError:
                 start = None
                 continue
@@ -144,8 +144,8 @@ class Trainer:
         reduction = self.reduction
         assert reduction is not None
         try:
-            laws, forces, friction = self.recipe.laws(index)
-            reduction.model = self.recipe.model_at(reduction.model, index)
+            laws, forces, friction = self.builder.laws(index)
+            reduction.model = self.builder.model_at(reduction.model, index)
             found = reduction.model.equilibrium(laws, forces, friction)
             return reduction.frequency_error(laws, forces, friction, found, self.study.modes.count)
         except FayingError:
@@ -157,8 +157,8 @@ class Trainer:
         for index in points:
             self.report("check", 0, 0)
             try:
-                laws, forces, friction = self.recipe.laws(index)
-                reduction.model = self.recipe.model_at(reduction.model, index)
+                laws, forces, friction = self.builder.laws(index)
+                reduction.model = self.builder.model_at(reduction.model, index)
                 found = reduction.model.equilibrium(laws, forces, friction)
                 error = reduction.modal_error(laws, found.pressures)
                 balance, _ = reduction.static_error(laws, forces, friction, found)

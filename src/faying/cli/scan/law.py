@@ -294,9 +294,9 @@ def pressures_of(text: str, points: int = 19) -> Any:
     if not 0 < values[0] < values[1]:
         raise InputError(f'--pressure "{text}": the first must be above 0 and below the second')
     if len(parts) == 3:
-        if not parts[2].isdigit() or not 2 <= int(parts[2]) <= MOST_POINTS:
+        if not parts[2].isdigit() or not 2 <= int(parts[2]) <= MAX_POINTS:
             raise InputError(
-                f'--pressure "{text}": POINTS = {parts[2]}; it must be a whole number from 2 to {MOST_POINTS:,}'
+                f'--pressure "{text}": POINTS = {parts[2]}; it must be a whole number from 2 to {MAX_POINTS:,}'
             )
         points = int(parts[2])
     return np.geomspace(values[0], values[1], points)
@@ -310,7 +310,7 @@ def reached(law: Any, pressures: Any) -> Any:
     return np.geomspace(first, last, pressures.size) if first < last else pressures
 
 
-MOST_POINTS = 1_000_000
+MAX_POINTS = 1_000_000
 
 
 def parameter_values(law: Any) -> dict[str, Any]:

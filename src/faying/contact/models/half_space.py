@@ -25,7 +25,7 @@ from faying.materials import ContactPair
 from faying.typing import Array
 from faying.units import show
 
-FEWEST_SPOTS = 10
+MIN_SPOTS = 10
 COARSE = 0.5  # greatest share of the stiffness on spots of fewer than 4 points
 LAY = 0.02  # relative difference of k_t along and across the lay that is said
 STEP = 1.05  # factor of pressure either way over which the slope of one contact's loading curve is taken
@@ -321,7 +321,7 @@ class HalfSpace(ContactLaw):
             k_n_high=values["k_n"] * curve["high"](x),
             **values,
             reasons={
-                f"fewer than {FEWEST_SPOTS} spots of the scan touch": curve["spots"](x) < FEWEST_SPOTS,
+                f"fewer than {MIN_SPOTS} spots of the scan touch": curve["spots"](x) < MIN_SPOTS,
                 f"more than {COARSE:.0%} of the stiffness rests on spots of fewer than 4 points; a finer lens would "
                 "change it": curve["coarse"](x) > COARSE,
                 f"k_n changes by more than {RESOLVED:.0%} on half the points each way": change > RESOLVED,

@@ -24,7 +24,7 @@ class Emulator:
     Args:
         priors: of the parameters.
         known: which frequencies have a surrogate (load, mode).
-        whole: the surrogate over the prior, of the known frequencies.
+        over_prior: the surrogate over the prior, of the known frequencies.
         close: the surrogate about the posterior; None before there is one.
         centre, inverse: of the ellipsoid about the posterior within which `close` counts, in standardised parameters;
             (x - centre) inverse has a length of at most 1 there.
@@ -32,7 +32,7 @@ class Emulator:
 
     priors: tuple[Distribution, ...]
     known: Mask
-    whole: Surrogate
+    over_prior: Surrogate
     close: Surrogate | None = None
     centre: Array | None = None
     inverse: Array | None = None
@@ -44,8 +44,8 @@ class Emulator:
         known = answered.mean(axis=0) >= ANSWERED * answered.any(axis=(1, 2)).mean()
         known &= answered.sum(axis=0) >= 2
         bounded = [prior.kind == "uniform" for prior in priors]
-        whole = Surrogate.fit(_standardised(priors, values), np.log(frequencies[:, known]), bounded=bounded)
-        return cls(priors=tuple(priors), known=known, whole=whole)
+        over_prior = Surrogate.fit(_standardised(priors, values), np.log(frequencies[:, known]), bounded=bounded)
+        return cls(priors=tuple(priors), known=known, over_prior=over_prior)
 
     def closer(self, values: Array, frequencies: Array, posterior: Array) -> Self:
         """Add a surrogate fitted to the points about a posterior alone.
@@ -66,7 +66,7 @@ class Emulator:
         inside = np.linalg.norm((x - centre) @ inverse, axis=1) <= 1
         if np.isfinite(logs[inside]).sum(axis=0).min(initial=len(x)) < 2 * (len(centre) + 1):
             return self
-        close = Surrogate.fit(x[inside], logs[inside], bounded=list(self.whole.bounded))
+        close = Surrogate.fit(x[inside], logs[inside], bounded=list(self.over_prior.bounded))
         return replace(self, close=close, centre=centre, inverse=inverse)
 
     def predict(self, values: Array) -> tuple[Array, Array]:
@@ -77,7 +77,7 @@ class Emulator:
     def predict_known(self, values: Array) -> tuple[Array, Array]:
         """ln f and the sd of its error (n, k) of the k frequencies that are known, in the order of the mask."""
         x = _standardised(self.priors, values)
-        logs, error = self.whole.predict(x), np.repeat(self.whole.error[None, :], len(x), axis=0)
+        logs, error = self.over_prior.predict(x), np.repeat(self.over_prior.error[None, :], len(x), axis=0)
         if self.close is not None:
             inside = self._inside(x)
             logs[inside], error[inside] = self.close.predict(x[inside]), self.close.error
@@ -86,7 +86,7 @@ class Emulator:
     def gradient(self, values: Array) -> Array:
         """The derivatives (n, load, mode, d) of ln f by the standardised parameters."""
         x = _standardised(self.priors, values)
-        slopes = self.whole.gradient(x)
+        slopes = self.over_prior.gradient(x)
         if self.close is not None:
             inside = self._inside(x)
             slopes[inside] = self.close.gradient(x[inside])

@@ -21,7 +21,8 @@ from faying.sweeps.variation import StudyVariant, check_key
 from faying.typing import Array
 
 LEVEL = "surface.level"  # of the spectrum in the middle of its band, at a given D
-FAR = 1.645  # standard normal score of the shares of 5 and 95 %, to which the bases are trained in each input
+# standard normal score of the shares of 5 and 95 %, to which the bases are trained in each input
+TRAINING_SCORE = 1.645
 PAIRS = 4  # samples far out in all inputs at once that the bases are trained on
 
 
@@ -226,10 +227,10 @@ class Ensemble:
 
         size, laws = len(inputs.columns), max(len(inputs.models), 1)
         rows = [np.zeros(size)] * laws
-        for column, sign in product(range(size), (-FAR, FAR)):
+        for column, sign in product(range(size), (-TRAINING_SCORE, TRAINING_SCORE)):
             rows.append(np.zeros(size))
             rows[-1][column] = sign
-        rows += list(np.random.default_rng(seed).choice([-FAR / 2, FAR / 2], (PAIRS, size)))
+        rows += list(np.random.default_rng(seed).choice([-TRAINING_SCORE / 2, TRAINING_SCORE / 2], (PAIRS, size)))
         shares = norm.cdf(np.array(rows))
         if inputs.models:  # laws in turn
             middles = np.array([inputs.share(law) for law in range(laws)])

@@ -45,7 +45,7 @@ class Evaluator:
 
     Args:
         model: The bases.
-        recipe: Makes laws, forces, gaps and scales; its design is the ensemble.
+        builder: Makes laws, forces, gaps and scales; its design is the ensemble.
         seen: What the points of the test see of the basis (k, d) and of the rigid motions (k, r) along its direction.
         test: The test; None where the study has none.
         median: The median at each load: after the shapes of its modes those of samples are named, and its equilibria
@@ -53,7 +53,7 @@ class Evaluator:
     """
 
     model: ReducedModel
-    recipe: VariantBuilder
+    builder: VariantBuilder
     seen: tuple[Array, Array] | None = None
     test: TestChoice | None = None
     median: tuple[Variant, ...] = ()
@@ -61,8 +61,8 @@ class Evaluator:
     @property
     def ensemble(self) -> Ensemble:
         """The samples."""
-        assert isinstance(self.recipe.design, Ensemble)
-        return self.recipe.design
+        assert isinstance(self.builder.design, Ensemble)
+        return self.builder.design
 
     def rows(self, samples: Sequence[int]) -> Rows:
         """Rows of some samples, counted without those for training; NaN where there is no answer, and `reasons`."""
@@ -75,13 +75,13 @@ class Evaluator:
 
     def solved(self, sample: int) -> tuple[ReducedModel, list[Variant], list[JointLaw]]:
         """One sample at all loads, with the model under its form and scales, and its laws."""
-        ensemble, recipe = self.ensemble, self.recipe
+        ensemble, builder = self.ensemble, self.builder
         first = (ensemble.training + sample) * ensemble.loads
-        model = recipe.model_at(self.model, first)
+        model = builder.model_at(self.model, first)
         found: list[Variant] = []
         usual = [one.preload.displacement for one in self.median]
         for load in range(ensemble.loads):
-            laws, forces, friction = recipe.laws(first + load)
+            laws, forces, friction = builder.laws(first + load)
             start = found[-1].preload.displacement if found else None
             if usual:
                 start = usual[load] if start is None else start + usual[load] - usual[load - 1]
@@ -209,7 +209,7 @@ class Reduced:
 
     def laws(self, ensemble: Ensemble) -> list[JointLaw]:
         """The law of each joint at the medians."""
-        return replace(self.trainer.recipe, design=ensemble).laws(ensemble.middle)[0]
+        return replace(self.trainer.builder, design=ensemble).laws(ensemble.middle)[0]
 
     def errors(self, ensemble: Ensemble, rows: Rows) -> Array:
         """Relative errors of the frequencies [-] (2, n) at some samples, each at the load of its greatest estimate.
@@ -257,7 +257,7 @@ class Reduced:
 
     def _points(self, ensemble: Ensemble, rows: Rows, chosen: Index) -> list[int]:
         """Points of some samples, each at the load of its greatest estimate; the trainer then has their ensemble."""
-        self.trainer.recipe = replace(self.trainer.recipe, design=ensemble)
+        self.trainer.builder = replace(self.trainer.builder, design=ensemble)
         loads = np.argmax(np.nan_to_num(rows["estimate"][chosen]), axis=1)
         return [int(point) for point in (ensemble.training + chosen) * ensemble.loads + loads]
 
@@ -285,11 +285,11 @@ class Reduced:
         self, ensemble: Ensemble, chunks: Sequence[Sequence[int]], law: int
     ) -> Iterable[tuple[Sequence[int], Rows]]:
         """Evaluate chunk by chunk, as they come."""
-        recipe = replace(self.trainer.recipe, design=ensemble)
+        builder = replace(self.trainer.builder, design=ensemble)
         if law not in self._work:
-            work = Evaluator(model=self.model.grouped(), recipe=recipe, seen=self.seen)
+            work = Evaluator(model=self.model.grouped(), builder=builder, seen=self.seen)
             self._work[law] = work.with_median(law)
-        work = replace(self._work[law], recipe=recipe, test=ensemble.study.test)
+        work = replace(self._work[law], builder=builder, test=ensemble.study.test)
         return each(work.rows, chunks, self.jobs, self.dask, "samples")
 
 

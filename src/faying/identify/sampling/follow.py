@@ -24,7 +24,7 @@ from faying.sweeps.variant_builder import VariantBuilder
 from faying.sweeps.work import Rows, rows_of
 from faying.typing import Array
 
-FEWEST = 8  # backbones
+MIN_BACKBONES = 8  # backbones
 
 
 def choice_of(study: Study, samples: int, backbones: int) -> BackboneChoice:
@@ -33,9 +33,10 @@ def choice_of(study: Study, samples: int, backbones: int) -> BackboneChoice:
     Raises InputError where the count does not fit, there is no [backbone], or it asks for several curves.
     """
     whole = isinstance(backbones, int) and not isinstance(backbones, bool)
-    if not whole or not FEWEST <= backbones <= samples:
+    if not whole or not MIN_BACKBONES <= backbones <= samples:
         raise InputError(
-            f"backbones = {backbones!r} should be a whole number from {FEWEST} to that of the samples, {samples:,}"
+            f"backbones = {backbones!r} should be a whole number from {MIN_BACKBONES} to that of the samples, "
+            f"{samples:,}"
         )
     choice = study.backbone
     if choice is None:
@@ -71,13 +72,13 @@ class Follower:
 
     Args:
         structure: Of the study; parts, laws and gaps of a sample are put into it.
-        recipe: Makes these; its design is the ensemble.
+        builder: Makes these; its design is the ensemble.
         choice: What is asked for, at a point that is the same in all samples.
         shape: Mode of the median at rest (unknowns,), after which that of a sample is known.
     """
 
     structure: Structure
-    recipe: VariantBuilder
+    builder: VariantBuilder
     choice: BackboneChoice
     shape: Array
 
@@ -85,23 +86,23 @@ class Follower:
     def of(cls, ensemble: Ensemble, choice: BackboneChoice, reduced: Reduced) -> Self:
         """Find the mode of the median, under the first law where several are drawn. Raises what `backbone` does."""
         trainer, store = reduced.trainer, reduced.store
-        recipe = replace(trainer.recipe, design=ensemble)
+        builder = replace(trainer.builder, design=ensemble)
         kept = store.rows("median", 0)
         if kept is None:
             reduced.report("mode of the backbones", 0, 0)
-            shape, at = median_of(recipe.case(trainer.structure, ensemble.middle), choice)
+            shape, at = median_of(builder.case(trainer.structure, ensemble.middle), choice)
             kept = {"shape": shape, "at": np.array(at)}
             store.keep_rows("median", 0, kept)
         x, y, z = kept["at"].tolist()
         # what is assembled is not sent to other processes
         structure = replace(trainer.structure, assembled=None)
-        return cls(structure=structure, recipe=recipe, choice=replace(choice, at=(x, y, z)), shape=kept["shape"])
+        return cls(structure=structure, builder=builder, choice=replace(choice, at=(x, y, z)), shape=kept["shape"])
 
     @property
     def ensemble(self) -> Ensemble:
         """The samples."""
-        assert isinstance(self.recipe.design, Ensemble)
-        return self.recipe.design
+        assert isinstance(self.builder.design, Ensemble)
+        return self.builder.design
 
     @property
     def grid(self) -> Array:
@@ -115,7 +116,7 @@ class Follower:
         ensemble = self.ensemble
         index = (ensemble.training + sample + 1) * ensemble.loads - 1
         friction = sliding(ensemble, self.choice, index)
-        return curve_like(self.recipe.case(self.structure, index), self.choice, friction, self.shape, least=LIKE)
+        return curve_like(self.builder.case(self.structure, index), self.choice, friction, self.shape, least=LIKE)
 
     def rows(self, samples: Sequence[int]) -> Rows:
         """Frequency [Hz] and damping [-] of some samples on the grid, why each ends early, and why it has none."""

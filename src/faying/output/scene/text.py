@@ -40,7 +40,7 @@ from faying.typing import Array
 
 VERSION = 1
 STEPS = 32767  # of a 16-bit integer on each side of zero
-MOST = 24e6  # characters of shapes: more is left out
+MAX_CHARACTERS = 24e6  # characters of shapes: more is left out
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,7 +137,7 @@ def _modes(modes: SceneModes | None, arrays: dict[str, Any]) -> dict[str, Any] |
     if modes is None:
         return None
     loads, count = modes.frequencies.shape
-    room = MOST
+    room = MAX_CHARACTERS
     for load, mode in ((k, j) for k in reversed(range(loads)) for j in range(count)):
         if room <= 0:
             break
