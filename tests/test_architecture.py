@@ -16,7 +16,7 @@ ORDER = [
     {"errors"},
     {"units", "files", "memory", "typing", "notes", "progress"},
     {"checks"},
-    {"hardness", "misuse", "text", "heading", "typeset"},
+    {"hardness", "misuse", "text", "heading", "data_sets", "typeset"},
     {"materials", "netcdf", "columns", "distribution", "cache", "style"},
     {"numerics", "surface"},
     {"mpi", "fe", "halfspace"},
@@ -186,6 +186,19 @@ PRIVATE_WORDS = {
     "Witness",
     "worn",
 }
+
+
+# a limit says what it limits: MAX_NEWTON_STEPS
+VAGUE = {"BEYOND", "BESIDE", "FAR", "FEW", "KEPT", "LEAST", "MANY", "MORE", "MOST", "NEAR", "SEEN", "STILL", "WHOLE"}
+
+
+def test_every_limit_says_what_it_limits():
+    for path in MODULES:
+        for node in ast.parse(path.read_text()).body:
+            targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+            named = [one for target in targets if target is not None for one in ast.walk(target)]
+            names = {one.id for one in named if isinstance(one, ast.Name)}
+            assert not names & VAGUE, f"{path}: {names & VAGUE}"
 
 
 def test_no_name_is_a_word_that_needs_its_author():

@@ -290,8 +290,8 @@ class Distribution:
                 return cls(**_of_table(value, unit, name))
             return cls(**_of_text(value, unit, name))
         except InputError as fault:
-            said = str(fault)
-            raise InputError(said if said.startswith(name) else f"{name}: {said}") from None
+            message = str(fault)
+            raise InputError(message if message.startswith(name) else f"{name}: {message}") from None
 
 
 def uncertain_text(value: object) -> bool:

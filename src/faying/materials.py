@@ -11,7 +11,7 @@ from faying.errors import InputError, shown
 from faying.hardness import BRINELL_RANGE, VickersHardness
 
 STIFFEST = 0.495  # Poisson's ratio from which displacements alone cannot describe a solid
-MOST_EXPANSION = 1e-3  # 1/K: beyond it a power of ten is wrong
+MAX_EXPANSION = 1e-3  # 1/K: beyond it a power of ten is wrong
 UNITS = {
     "E": "Pa",
     "nu": "",
@@ -88,9 +88,9 @@ class Material:
             endless = field in ("density", "conductivity", "resistivity", "bearing_limit") and value == inf
             if value is not None and (isnan(value) or value <= 0 or endless):
                 raise InputError(f"material {self.name!r}: {field} = {value}; it must be positive, or left out")
-        if self.expansion is not None and not abs(self.expansion) < MOST_EXPANSION:
+        if self.expansion is not None and not abs(self.expansion) < MAX_EXPANSION:
             raise InputError(
-                f"material {self.name!r}: expansion = {self.expansion} 1/K; no solid reaches {MOST_EXPANSION:g} 1/K, "
+                f"material {self.name!r}: expansion = {self.expansion} 1/K; no solid reaches {MAX_EXPANSION:g} 1/K, "
                 "steel has 12e-6 1/K"
             )
         if self.friction is not None and not (isfinite(self.friction) and self.friction >= 0):

@@ -162,6 +162,6 @@ def test_bolts_that_are_no_bolts_of_a_structure(single):
 
 
 def test_a_layer_too_fine_to_couple(single, monkeypatch):
-    monkeypatch.setattr("faying.bolt.solid_bolt.MOST", 30)
+    monkeypatch.setattr("faying.bolt.solid_bolt.MAX_LAYER_UNKNOWNS", 30)
     with pytest.raises(faying.InputError, match="unknowns, which all couple .* mesh the shank more coarsely"):
         structure(single).loads  # noqa: B018

@@ -143,7 +143,7 @@ def test_points_are_spread_over_the_outline_and_begin_with_those_of_the_response
     assert positions[1] == pytest.approx((0.04, 0.015, 0.015))
     assert positions[2] == pytest.approx((-0.04, -0.015, -0.015))
     points = np.array(list(positions.values()))
-    assert 100 < len(points) <= universal.MOST_POINTS
+    assert 100 < len(points) <= universal.MAX_POINTS
     outside = result.outline[np.abs(result.outline[:, 2]) > 1e-6]  # the faces of the joint lie at z = 0, in pairs
     away = np.linalg.norm(outside[:, None] - points, axis=2).min(axis=1)
     assert away.max() < 10e-3  # no bare patch wider than a tenth of the blocks

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import faying
+from faying.data_sets import check_data_sets
 from faying.measured.text import read_frf_text
-from faying.text import check_data_sets
 from tests.fuzz.seeds import written
 
 SETS = ["    -1", "   151", "title", "    -1", "    -1", "    58b     1", "data", "", "    -1", ""]

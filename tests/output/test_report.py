@@ -77,7 +77,7 @@ def test_a_wide_table_is_split_and_loses_nothing():
     shown = page_parts.table(rows, keys=2)
     tables = re.findall(r"<table.*?</table>", shown)
     heads = [re.findall(r"<th [^>]*>(.*?)</th>", one) for one in tables]
-    assert all(head[:2] == ["c0", "c1"] and len(head) <= page_parts.MOST_COLUMNS for head in heads)
+    assert all(head[:2] == ["c0", "c1"] and len(head) <= page_parts.MAX_COLUMNS for head in heads)
     assert [cell for head in heads for cell in head[2:]] == rows[0][2:]
     assert [c for one in tables for c in re.findall(r"<td>(.*?)</td>", one)[2:]] == rows[1][2:]
 

@@ -366,7 +366,7 @@ def test_what_the_mesher_refuses_is_a_fault(folder, monkeypatch):
     (fault,) = check(folder / "study.toml", mesh=True).faults
     assert (fault.code, fault.key, fault.text) == ("mesh", "geometry.size", "no mesh")
     assert (folder / "study.toml").read_text().splitlines()[fault.line - 1].startswith("size = ")
-    monkeypatch.setattr("faying.setup.check.MOST_MESHED", 1000)
+    monkeypatch.setattr("faying.setup.check.MAX_MESHED", 1000)
     assert not check(folder / "study.toml", mesh=True).faults
 
 

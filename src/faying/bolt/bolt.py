@@ -26,7 +26,7 @@ from faying.units import positive, show, si
 # proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
 ACROSS_FLATS, HEAD_HEIGHT, NUT_HEIGHT = 1.5, 0.64, 0.85
 CLEARANCE = 1.1  # diameter of a clearance hole over that of its bolt (ISO 273, medium)
-BESIDE = 0.2  # of a hole's radius: farther from its centre, an axis misses it
+AXIS_OFFSET = 0.2  # of a hole's radius: farther from its centre, an axis misses it
 HEXAGON = 3**0.5 / 2  # area of a hexagon over the square of its width across flats
 
 
@@ -353,15 +353,15 @@ class Bolt:
         for face in faces:
             for hole in holes(mesh.points, mesh.face(face)):
                 arm = hole.centre - point
-                beside = float(np.linalg.norm(arm - (arm @ axis) * axis))
-                if beside <= BESIDE * hole.radius:
+                offset = float(np.linalg.norm(arm - (arm @ axis) * axis))
+                if offset <= AXIS_OFFSET * hole.radius:
                     return hole
-                if beside <= (2 if 2 * hole.radius <= self._covered else 1) * hole.radius:
-                    near.append((beside, hole, face))
+                if offset <= (2 if 2 * hole.radius <= self._covered else 1) * hole.radius:
+                    near.append((offset, hole, face))
         if near:
-            beside, hole, face = min(near, key=lambda one: one[0])
+            offset, hole, face = min(near, key=lambda one: one[0])
             raise InputError(
-                f"bolt {self.name!r}: its axis is {show(beside, 'm')} away from the centre of the hole of "
+                f"bolt {self.name!r}: its axis is {show(offset, 'm')} away from the centre of the hole of "
                 f"{show(2 * hole.radius, 'm')} in {face!r}, at "
                 f"({', '.join(f'{1e3 * x:.4g}' for x in hole.centre)}) mm; "
                 "give that point as `at`"

@@ -25,7 +25,7 @@ from faying.units import positive, show, si
 
 ORDER = 6  # greatest power of the depth in the pressure on the wall of a hole
 PLAY = 0.02  # of the diameter: holes that differ by more from the pin do not hold it without play
-BESIDE = 0.02  # of the diameter: axes of holes that lie farther apart take no pin
+AXIS_OFFSET = 0.02  # of the diameter: axes of holes that lie farther apart take no pin
 PARALLEL = 0.9998  # cosine of one degree
 CONDITION = 1e2  # of the moments of a wall: beyond it its mesh does not tell so many apart
 
@@ -94,7 +94,7 @@ class Dowel:
         for wall, (hole, radius) in zip(self.walls, found, strict=True):
             arm = hole.point - first.point
             aside = float(np.linalg.norm(arm - (arm @ first.axis) * first.axis))
-            if abs(hole.axis @ first.axis) < PARALLEL or aside > BESIDE * diameter:
+            if abs(hole.axis @ first.axis) < PARALLEL or aside > AXIS_OFFSET * diameter:
                 raise InputError(
                     f"dowel {self.name!r}: the holes {self.walls[0]!r} and {wall!r} are not on one axis "
                     f"({show(aside, 'm', digits=3)} apart); name the holes that one pin fits"
@@ -161,9 +161,9 @@ class DowelPlace:
             return self
         low, high = sorted(float(np.array(end) @ self.axis) for end in self.dowel.ends)
         depths = np.clip(self.depths, low, high)
-        held = depths[:, 1] - depths[:, 0]
-        if held.min() < PLAY * self.diameter:
-            short = self.walls[int(np.argmin(held))]
+        lengths = depths[:, 1] - depths[:, 0]
+        if lengths.min() < PLAY * self.diameter:
+            short = self.walls[int(np.argmin(lengths))]
             raise InputError(
                 f"dowel {self.dowel.name!r} is {show(high - low, 'm')} long and does not reach the hole {short!r}; "
                 "give other ends, or leave them out for a pin as long as its holes"
@@ -398,10 +398,10 @@ def _sections(z: Array, depths: Array, orders: Sequence[int]) -> tuple[Array, Ar
     V, M = [], []
     for (low, high), order in zip(depths, orders, strict=True):
         half, place = (high - low) / 2, np.clip(2 * (z - low) / (high - low) - 1, -1, 1)
-        beyond = np.maximum(z - high, 0.0)
+        excess = np.maximum(z - high, 0.0)
         for k in range(order + 1):
             load = (2 * k + 1) / (2 * half) * np.eye(order + 1)[k]
             once = legint(load, 1, lbnd=-1) * half
             V.append(legval(place, once))
-            M.append(legval(place, legint(once, 1, lbnd=-1) * half) + beyond * float(k == 0))
+            M.append(legval(place, legint(once, 1, lbnd=-1) * half) + excess * float(k == 0))
     return np.array(V), np.array(M)

@@ -65,8 +65,8 @@ class Row:
     @property
     def missing(self) -> tuple[str, ...]:
         """What would have to be given for the verdict to be known."""
-        asked = self.result.missing + (self.limit.missing if self.limit is not None else ())
-        return tuple(dict.fromkeys(asked))
+        needs = self.result.missing + (self.limit.missing if self.limit is not None else ())
+        return tuple(dict.fromkeys(needs))
 
     @property
     def utilisation(self) -> float | None:

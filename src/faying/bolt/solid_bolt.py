@@ -14,7 +14,7 @@ from faying.fe.mesh import Mesh
 from faying.misuse import checked_call
 from faying.typing import Array, Index
 
-MOST = 6000  # unknowns of the layer that is drawn in: its dense block takes 0.3 GB then
+MAX_LAYER_UNKNOWNS = 6000  # unknowns of the layer that is drawn in: its dense block takes 0.3 GB then
 
 
 @checked_call
@@ -69,8 +69,8 @@ class SolidBolt:
                 f"{nut!r}; give a point between them as `at`"
             )
         nodes = mesh.part_nodes(part)
-        beyond = nodes[(mesh.points[nodes] - place) @ axis > 0]
-        layer = _across(mesh, part, beyond)
+        above = nodes[(mesh.points[nodes] - place) @ axis > 0]
+        layer = _across(mesh, part, above)
         met = [f for f in joined if mesh.face_part.get(f) == part and np.isin(mesh.face_nodes(f), layer).any()]
         if met:
             raise InputError(
@@ -83,13 +83,14 @@ class SolidBolt:
                 f"bolt {self.name!r}: the plane through {_mm(place)} mm that cuts its shank meets nodes that it "
                 f"shares with {others[0]!r}, to which it is bonded; give a point of the bare shank as `at`"
             )
-        if 3 * len(layer) > MOST:
+        if 3 * len(layer) > MAX_LAYER_UNKNOWNS:
             raise InputError(
                 f"bolt {self.name!r}: the elements in the plane across its shank have {3 * len(layer):,} unknowns, "
-                f"which all couple while it is pulled ({MOST:,} at most); mesh the shank more coarsely, or give a beam"
+                f"which all couple while it is pulled ({MAX_LAYER_UNKNOWNS:,} at most); mesh the shank more coarsely, "
+                "or give a beam"
             )
         drawn = np.zeros((len(mesh.points), 3))
-        drawn[beyond] = axis
+        drawn[above] = axis
         pull = np.zeros_like(drawn)  # nothing but rounding outside the layer, where the motion is rigid
         pull[layer] = np.asarray(stiffness @ drawn.ravel()).reshape(-1, 3)[layer]
         rigidity = float(np.sum(pull * drawn))
@@ -153,10 +154,10 @@ class FittedSolidBolt:
         return float(self.pull @ displacement)
 
 
-def _across(mesh: Mesh, part: str, beyond: Index) -> Index:
-    """Nodes of the elements of a part that have nodes both in `beyond` and not."""
+def _across(mesh: Mesh, part: str, above: Index) -> Index:
+    """Nodes of the elements of a part that have nodes both in `above` and not."""
     far = np.zeros(len(mesh.points), dtype=bool)
-    far[beyond] = True
+    far[above] = True
     found = [np.zeros(0, dtype=np.int64)]
     for cells in mesh.parts[part]:
         inside = far[cells].sum(axis=1)

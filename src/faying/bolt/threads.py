@@ -79,7 +79,7 @@ STRENGTH = {
 }
 THICK, PROOF_THICK = 16e-3, 600e6  # beyond this diameter [m], class 8.8 has this stress under proof load [Pa]
 STRENGTH_THICK = (830e6, 660e6)  # and these strengths
-LEAST, GREATEST = 1.6e-3, 39e-3  # diameters [m] that ISO 898-1 covers
+MIN_DIAMETER, MAX_DIAMETER = 1.6e-3, 39e-3  # diameters [m] that ISO 898-1 covers
 THINNEST, THICKEST = 1e-3, 300e-3  # diameters [m] of the threads of ISO 261
 FORM = re.compile(r"M([0-9]+(?:\.[0-9]+)?)(?:\s*x\s*([0-9]+(?:\.[0-9]+)?))?")
 
@@ -224,7 +224,7 @@ class Fastener:
             raise InputError(
                 f'grade "{self.grade}" is not a property class of ISO 898-1; give one of {", ".join(PROOF)}'
             )
-        if not LEAST <= self.thread.diameter <= GREATEST:
+        if not MIN_DIAMETER <= self.thread.diameter <= MAX_DIAMETER:
             raise InputError(
                 f"thread {self.thread}: the property classes of ISO 898-1 cover M1.6 to M39; leave out grade"
             )

@@ -22,7 +22,7 @@ SHAPE = 1.06  # 1 - cos(pi r/(2 r_a)) ~ 1.06 (r/r_a)^2, eq. (9)
 PANEL = np.log(1e3)  # longest panel of a quadrature in ln x
 COUPLING = 1.5 / 2**0.5  # xi sqrt(h_a)
 OWN_MODULUS = 0.453  # fitted to computed caps, benchmarks/asperity_substrate.py
-MOST_RATIO, COMPUTED_HEIGHT = 4.0, 0.075  # greatest Ea/Eb and h_a/R of caps that were computed; none below Ea = Eb
+MAX_RATIO, COMPUTED_HEIGHT = 4.0, 0.075  # greatest Ea/Eb and h_a/R of caps that were computed; none below Ea = Eb
 
 
 def substrate_share(deformation: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:

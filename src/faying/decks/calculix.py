@@ -15,7 +15,7 @@ from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_do
 from faying.errors import ReadError
 from faying.typing import Index
 
-MOST_POINTS = 200
+MAX_POINTS = 200
 
 
 def read_matrices(path: Path, _names: tuple[str, str]) -> Matrices:

@@ -278,11 +278,11 @@ def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
     for what, A in (("stiffness", K), ("mass", M)):
         # no entry of a matrix that costs or stores energy is greater than the mean of its two diagonals
         entries, diagonal = A.tocoo(), A.diagonal()
-        beyond = entries.data**2 > (1 + SYMMETRIC) * diagonal[entries.row] * diagonal[entries.col]
-        if np.any(beyond):
-            (a, b), (c, d) = dofs[entries.row[beyond][0]], dofs[entries.col[beyond][0]]
+        too_large = entries.data**2 > (1 + SYMMETRIC) * diagonal[entries.row] * diagonal[entries.col]
+        if np.any(too_large):
+            (a, b), (c, d) = dofs[entries.row[too_large][0]], dofs[entries.col[too_large][0]]
             raise InputError(
-                f"{name}: {np.count_nonzero(beyond)} entries of the {what} matrix are greater than their diagonals "
+                f"{name}: {np.count_nonzero(too_large)} entries of the {what} matrix are greater than their diagonals "
                 "allow, that of node "
                 f"{a} direction {b} and node {c} direction {d} for one: the matrix is cut short or not positive"
             )

@@ -23,7 +23,7 @@ from faying.typing import Array, Index
 
 STEP = (".step", ".stp")
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
-FEW_NODES, MOST_LOST = 10, 0.1  # nodes of no element, and their share, beyond which a file may be cut short
+FEW_NODES, MAX_LOST = 10, 0.1  # nodes of no element, and their share, beyond which a file may be cut short
 CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
 
 
@@ -221,7 +221,7 @@ class _Builder:
             [self.raw.references, *(some for some in self.raw.node_sets.values() if len(some) == 1)]
         )
         lost = loose[~np.isin(loose, points_of_reference)]
-        if len(lost) > max(FEW_NODES, MOST_LOST * len(points)) and not self.raw.counted:
+        if len(lost) > max(FEW_NODES, MAX_LOST * len(points)) and not self.raw.counted:
             raise InputError(
                 f"{self.name}: {len(lost)} of {len(points)} nodes belong to no element: {few(lost)}; delete them, or "
                 "is the file cut short?"

@@ -15,9 +15,9 @@ from faying.text import few
 from faying.typing import Array, Index
 
 GREATEST = 10**12  # number of a node or an element
-MOST = 20_000_000  # numbers of a range
+MAX_RANGE = 20_000_000  # numbers of a range
 DIGITS = 30  # of a number of a node or a direction, zeros in front included
-DEEPEST, MOST_FILES = 20, 500  # of included files
+DEEPEST, MAX_FILES = 20, 500  # of included files
 # Nastran and Code_Aster put the middle nodes of the upright edges before those of the top; by number of nodes
 UPRIGHT_FIRST = {20: [*range(12), *range(16, 20), *range(12, 16)], 15: [*range(9), *range(12, 15), *range(9, 12)]}
 
@@ -103,10 +103,10 @@ def joined(blocks: Iterable[Index]) -> Index:
 
 def ranged(first: int, last: int, step: int, where: str) -> Index:
     """Numbers from first to last. Raises ReadError where they do not rise or are more than any file holds."""
-    if step < 1 or last < first or first < 1 or (last - first) // step > MOST:
+    if step < 1 or last < first or first < 1 or (last - first) // step > MAX_RANGE:
         raise ReadError(
-            f"{where}: a range from {first} to {last} by {step}; ranges rise from 1 or more and have at most {MOST:,} "
-            "numbers"
+            f"{where}: a range from {first} to {last} by {step}; ranges rise from 1 or more and have at most "
+            f"{MAX_RANGE:,} numbers"
         )
     return np.arange(first, last + 1, step)
 
@@ -180,8 +180,8 @@ def check_included(path: Path, seen: tuple[Path, ...], count: list[int]) -> None
     count[0] += 1
     if path.resolve() in seen:
         raise ReadError(f"{path} includes itself")
-    if len(seen) > DEEPEST or count[0] > MOST_FILES:
-        raise ReadError(f"{path}: more than {MOST_FILES} files are included, or {DEEPEST} deep; write them into one")
+    if len(seen) > DEEPEST or count[0] > MAX_FILES:
+        raise ReadError(f"{path}: more than {MAX_FILES} files are included, or {DEEPEST} deep; write them into one")
 
 
 @contextmanager

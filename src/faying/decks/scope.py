@@ -246,10 +246,10 @@ def _other(block: Block, scope: Scope, numbers: Index) -> None:
 
 def _bolt(block: Block, scope: Scope) -> None:
     """Note a pre-tension section with its words: its surface is a cut inside the bolt, or it is a beam."""
-    said = ", ".join(f"{key}={value}" for key, value in block.options.items())
+    options_text = ", ".join(f"{key}={value}" for key, value in block.options.items())
     along = f", direction {block.lines[0].strip()}" if block.lines else ""
     given = [float(word) for word in block.words()[:3]]
-    text = f"{block.where}: *PRE-TENSION SECTION, {said}{along}"
+    text = f"{block.where}: *PRE-TENSION SECTION, {options_text}{along}"
     scope.bolts.append(
         PretensionSection(
             text=text,

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from faying.data_sets import check_data_sets
 from faying.decks.raw import RawMesh, face_blocks, gathered, index, not_in_file, read_text
 from faying.errors import ReadError
-from faying.text import check_data_sets
 
 _NODES, _ELEMENTS, _GROUPS = ("2411", "781"), ("2412", "780"), ("2467", "2477", "2452", "2435")
 # code of a finite element: kind, and the places of its nodes, which run round: corner, middle, corner, ...
@@ -51,7 +51,7 @@ def read(path: Path) -> RawMesh:
     groups: dict[str, tuple[list[int], list[int]]] = {}
     notes: list[str] = []
     exported: set[int] = set()
-    held: set[int] = set()  # numbers of all elements, those that are left out among them
+    known_elements: set[int] = set()  # numbers of all elements, those that are left out among them
     datasets = _datasets(path)
     moved = {label for number, lines in datasets if number == "2420" for label in _moved(lines)}
     for number, lines in datasets:
@@ -70,7 +70,7 @@ def read(path: Path) -> RawMesh:
                 if points.setdefault(label, at) != at:
                     raise ReadError(f"{path}: node {label} is given twice, at different places")
         elif number in _ELEMENTS:
-            extra += _elements(path, lines, solids, shells, held)
+            extra += _elements(path, lines, solids, shells, known_elements)
         elif number in _GROUPS:
             groups |= _groups(path, lines)
     if exported:
@@ -80,7 +80,7 @@ def read(path: Path) -> RawMesh:
         )
     faces: dict[str, list[list[int]]] = {}
     for name, (elements, _) in groups.items():
-        notes += not_in_file(f"the group {name!r}", "elements", elements, held)
+        notes += not_in_file(f"the group {name!r}", "elements", elements, known_elements)
         on = [shells[e] for e in elements if e in shells]
         if on:
             faces[name] = on
@@ -123,7 +123,7 @@ def _elements(
     lines: list[str],
     solids: dict[str, list[tuple[int, list[int]]]],
     shells: dict[int, list[int]],
-    held: set[int],
+    known_elements: set[int],
 ) -> list[int]:
     """Sort the elements of a data set into solids and shells; return the nodes of beams."""
     beams: list[int] = []
@@ -133,7 +133,7 @@ def _elements(
         if len(head) < 6:
             raise ReadError(f"{path}: the element {lines[k].strip()!r} has no six numbers; is the file complete?")
         number, code, count = int(head[0]), int(head[1]), int(head[5])
-        held.add(number)
+        known_elements.add(number)
         k += 2 if code in _BEAMS else 1
         nodes: list[int] = []
         while len(nodes) < count and k < len(lines):

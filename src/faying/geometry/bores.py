@@ -9,8 +9,8 @@ import numpy as np
 from faying.geometry.face_facts import FACING, FaceFacts, GeometryFacts
 from faying.typing import Array
 
-WHOLE = 0.95  # share of a turn from which the faces of a bore close
-BESIDE = 0.2  # of the radius: axes that lie farther apart are two
+FULL_TURN = 0.95  # share of a turn from which the faces of a bore close
+AXIS_OFFSET = 0.2  # of the radius: axes that lie farther apart are two
 LEVEL = 1e-6  # m: within which a plane begins where a bore ends
 
 
@@ -80,8 +80,8 @@ def bores(facts: GeometryFacts) -> list[Bore]:
             ends = [_ends(face, axis) for face in same]
             low, high = min(a for a, _ in ends), max(b for _, b in ends)
             turn = sum((face.turn or 0.0) * (b - a) for face, (a, b) in zip(same, ends, strict=True)) / (high - low)
-            if turn < WHOLE or first.radius is None:
-                halves += [same] if abs(turn - 0.5) < 1 - WHOLE else []
+            if turn < FULL_TURN or first.radius is None:
+                halves += [same] if abs(turn - 0.5) < 1 - FULL_TURN else []
                 continue
             out.append(
                 Bore(
@@ -173,8 +173,9 @@ def seat(facts: GeometryFacts, bore: Bore, *, top: bool) -> FaceFacts | None:
     """
     outwards = bore.axis if top else -bore.axis
     depth = bore.high if top else bore.low
-    beside = {other for number in bore.faces for other in facts.face(bore.part, number).neighbours}
-    near = beside | {other for number in beside for other in facts.face(bore.part, number).neighbours}  # past a chamfer
+    neighbours = {other for number in bore.faces for other in facts.face(bore.part, number).neighbours}
+    past_chamfer = {other for number in neighbours for other in facts.face(bore.part, number).neighbours}
+    near = neighbours | past_chamfer
     fitting = []
     for number in near:
         face = facts.face(bore.part, number)
@@ -182,7 +183,7 @@ def seat(facts: GeometryFacts, bore: Bore, *, top: bool) -> FaceFacts | None:
             continue
         level = (np.array(face.centre) - bore.at(depth)) @ outwards
         if -LEVEL <= level <= bore.radius:
-            fitting.append((number not in beside, level, number))
+            fitting.append((number not in neighbours, level, number))
     return facts.face(bore.part, min(fitting)[2]) if fitting else None
 
 
@@ -232,4 +233,4 @@ def _one_axis(one: Bore, two: Bore) -> bool:
         if slot is not None:  # a bolt may stand anywhere between the ends of a slot
             arm = arm - float(np.clip(arm @ slot / (slot @ slot), -0.5, 0.5)) * slot
     aside = float(np.linalg.norm(arm - (arm @ one.axis) * one.axis))
-    return bool(abs(one.axis @ two.axis) >= FACING and aside <= BESIDE * min(one.radius, two.radius))
+    return bool(abs(one.axis @ two.axis) >= FACING and aside <= AXIS_OFFSET * min(one.radius, two.radius))

@@ -21,7 +21,7 @@ Point = tuple[float, float, float]
 FLAT = 1e-5  # of a face's size: how far its points lie from a plane that it counts as
 ROUND = 1e-4  # of the radius: how far they lie from a cylinder
 FACING = np.cos(np.deg2rad(1.0))  # faces that differ by less than a degree are parallel
-NEAR = 0.01  # of the size of the structure: faces farther apart do not belong together
+MAX_DISTANCE = 0.01  # of the size of the structure: faces farther apart do not belong together
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -252,15 +252,15 @@ def read_facts(
 def facts_answer(request: dict[str, Any]) -> Answer:
     """Find what `read_facts` asks for; this runs in the process of its own."""
     path = Path(request["path"])
-    held = read_parts(path).without(request["leave_out"])
-    found = facts_of(held.solids, held.names, path.name, request["points"], touching=request["touching"])
+    cad = read_parts(path).without(request["leave_out"])
+    found = facts_of(cad.solids, cad.names, path.name, request["points"], touching=request["touching"])
     facts: dict[str, Any] = {
         "parts": [asdict(part) for part in found.parts],
         "faces": [asdict(face) for face in found.faces],
         "contacts": [asdict(contact) for contact in found.contacts],
         "distances": found.distances,
-        "overlaps": shared_volumes(held.solids, held.names) if request["overlaps"] else [],
-        "notes": [asdict(note) for note in held.notes],
+        "overlaps": shared_volumes(cad.solids, cad.names) if request["overlaps"] else [],
+        "notes": [asdict(note) for note in cad.notes],
     }
     return Answer(facts=facts, arrays={"corners": found.corners, "face_of": found.face_of})
 
@@ -277,12 +277,12 @@ def facts_of(
     faces: list[FaceFacts] = []
     parts, corners, owner = [], [], []
     for solid, name in zip(solids, names, strict=True):
-        held = list(solid.faces)
+        solid_faces = list(solid.faces)
         tris, normals, of = _triangles(solid)
-        edges = [{hash(edge) for edge in face.edges} for face in held]
-        for k, face in enumerate(held):
+        edges = [{hash(edge) for edge in face.edges} for face in solid_faces]
+        for k, face in enumerate(solid_faces):
             mine = of == k
-            near = tuple(j + 1 for j in range(len(held)) if j != k and edges[j] & edges[k])
+            near = tuple(j + 1 for j in range(len(solid_faces)) if j != k and edges[j] & edges[k])
             centre = 1e-3 * np.array([face.center.x, face.center.y, face.center.z])
             shape = shape_of(tris[mine], normals[mine], 1e-6 * face.mass)
             faces.append(
@@ -299,7 +299,7 @@ def facts_of(
             corners.append(tris[mine])
             owner.append(np.full(np.count_nonzero(mine), len(faces) - 1))
         low, high = _point(tris.min(axis=(0, 1))), _point(tris.max(axis=(0, 1)))
-        area = sum(1e-6 * face.mass for face in held)
+        area = sum(1e-6 * face.mass for face in solid_faces)
         parts.append(PartFacts(name=name, volume=1e-9 * solid.mass, area=area, low=low, high=high))
     places, face_of = np.concatenate(corners), np.concatenate(owner)
     distances = {label: _distances(label, part, at, solids, names) for label, (part, at) in points.items()}
@@ -393,9 +393,9 @@ def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list
     """Faces of different parts that look at each other, the widest first.
 
     Planes that are nearly parallel, and cylinders in cylinders of nearly their radius on one axis, no farther apart
-    than `NEAR` of the whole.
+    than `MAX_DISTANCE` of the whole.
     """
-    reach = NEAR * float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0)))
+    reach = MAX_DISTANCE * float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0)))
     order = np.argsort(face_of, kind="stable")
     ends = np.searchsorted(face_of[order], np.arange(len(faces) + 1))
     rows = [order[a:b] for a, b in pairwise(ends.tolist())]
@@ -477,10 +477,10 @@ def part_distance(path: Path) -> tuple[str, str, float] | None:
 
 def distance_answer(request: dict[str, Any]) -> Answer:
     """Find what `part_distance` asks for; this runs in the process of its own."""
-    held = read_parts(Path(request["path"]))
+    cad = read_parts(Path(request["path"]))
     pairs = [
-        (1e-3 * held.solids[i].Distance(held.solids[j]), held.names[i], held.names[j])
-        for i, j in combinations(range(len(held.solids)), 2)
+        (1e-3 * cad.solids[i].Distance(cad.solids[j]), cad.names[i], cad.names[j])
+        for i, j in combinations(range(len(cad.solids)), 2)
     ]
     if not pairs:
         return Answer(facts=None)

@@ -114,15 +114,15 @@ def mesh_answer(given: dict[str, Any]) -> Answer:
     request = _Request(**given)
     path, size = Path(request.path), request.size
     occ = kernel()
-    held = read_parts(path).without(request.leave_out)
-    solids, names, notes = held.solids, held.names, held.notes
+    cad = read_parts(path).without(request.leave_out)
+    solids, names, notes = cad.solids, cad.names, cad.notes
     for solid, name in zip(solids, names, strict=True):
         solid.name = name
     _check_size(sum(solid.mass for solid in solids), size, path.name)
 
     # gluing merges touching faces and keeps one of their names: remember the geometry of every named face
     marks = [Mark(face.name, names[i], face) for i, solid in enumerate(solids) for face in solid.faces if face.name]
-    marks += _selected(held, request, {mark.name for mark in marks})
+    marks += _selected(cad, request, {mark.name for mark in marks})
     glued = occ.Glue(solids) if len(solids) > 1 else solids[0]
     parts = list(glued.solids)
     if len(parts) != len(solids):
@@ -168,7 +168,7 @@ def _meshed(glued: Any, size: float, name: str) -> Any:
     )
 
 
-def _selected(held: CadParts, request: _Request, taken: Container[str]) -> list["Mark"]:
+def _selected(cad: CadParts, request: _Request, taken: Container[str]) -> list["Mark"]:
     """Marks of the faces that the selectors mean. Raises InputError where one takes a name that the file gives."""
     selectors = {label: Selector(**tuples(fields)) for label, fields in request.selectors.items()}
     again = [label for label in selectors if label in taken]
@@ -178,10 +178,10 @@ def _selected(held: CadParts, request: _Request, taken: Container[str]) -> list[
         return []
     touching = any(selector.touching is not None for selector in selectors.values())
     name = Path(request.path).name
-    facts = facts_of(held.solids, held.names, name, points_of(selectors), touching=touching)
+    facts = facts_of(cad.solids, cad.names, name, points_of(selectors), touching=touching)
     out = []
     for label, selector in selectors.items():
-        faces = list(held.solids[held.names.index(selector.part)].faces) if selector.part in held.names else []
+        faces = list(cad.solids[cad.names.index(selector.part)].faces) if selector.part in cad.names else []
         found = chosen(label, selector, facts, snap=request.snap)
         out += [Mark(label, selector.part, faces[face.number - 1]) for face in found]
     return out

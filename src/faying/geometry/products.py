@@ -78,10 +78,10 @@ def read_products(text: str) -> Products:
     }
     occurrences = []
     for words in entities.get("NEXT_ASSEMBLY_USAGE_OCCURRENCE", {}).values():
-        said = [word for word in words if isinstance(word, str)]
+        texts = [word for word in words if isinstance(word, str)]
         at = [word for word in words if isinstance(word, int)]
         if len(at) >= 2 and at[0] in names and at[1] in names:
-            order = (*said[1:2], *said[:1], *said[2:3])  # the name first, then the id
+            order = (*texts[1:2], *texts[:1], *texts[2:3])  # the name first, then the id
             occurrences.append(Occurrence(words=tuple(order), inside=at[0], of=at[1]))
     return Products(names=names, occurrences=tuple(occurrences))
 
@@ -119,11 +119,11 @@ def named_by_product(solids: Sequence[Any], found: Sequence[Leaf]) -> list[str]:
     several = len(found) > 1
     owned: dict[str, list[tuple[int, str]]] = {}
     for leaf in found:
-        held = [k for k, solid in enumerate(solids) if any(solid == one for one in leaf.shape.solids)]
-        if leaf.product.startswith(PLACEHOLDER) or not leaf.product.strip() or (len(held) > 1 and not several):
+        own_solids = [k for k, solid in enumerate(solids) if any(solid == one for one in leaf.shape.solids)]
+        if leaf.product.startswith(PLACEHOLDER) or not leaf.product.strip() or (len(own_solids) > 1 and not several):
             continue
-        for k in held:
-            owned.setdefault(leaf.product, []).append((k, leaf.occurrence if len(held) == 1 else ""))
+        for k in own_solids:
+            owned.setdefault(leaf.product, []).append((k, leaf.occurrence if len(own_solids) == 1 else ""))
     for product, places in owned.items():
         called = [occurrence for _, occurrence in places]
         apart = len(set(called)) == len(called) > 1 and not any(COUNTED.fullmatch(word) for word in called)
@@ -134,8 +134,8 @@ def named_by_product(solids: Sequence[Any], found: Sequence[Leaf]) -> list[str]:
 
 def _name(words: Sequence[str | int]) -> str:
     """The name of a product, its id where that is empty."""
-    said = [word for word in words if isinstance(word, str)]
-    return next((word for word in (*said[1:2], *said[:1]) if word.strip()), "")
+    texts = [word for word in words if isinstance(word, str)]
+    return next((word for word in (*texts[1:2], *texts[:1]) if word.strip()), "")
 
 
 def _arguments(text: str, start: int) -> Iterator[str | int]:

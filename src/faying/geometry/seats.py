@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.geometry.bores import LEVEL, WHOLE, Bore
+from faying.geometry.bores import FULL_TURN, LEVEL, Bore
 from faying.geometry.face_facts import FACING, FaceFacts, GeometryFacts
 from faying.geometry.seen_along import across, circle, hits
 
@@ -50,7 +50,7 @@ def countersink(facts: GeometryFacts, bore: Bore, *, top: bool) -> Countersink |
         area += face.area
         widest = float(radius.max())
         cone_area = np.pi * (radius.min() + radius.max()) * float(np.hypot(np.ptp(depth), np.ptp(radius)))
-    return Countersink(faces=tuple(found), outer=2 * widest) if found and area > WHOLE * cone_area else None
+    return Countersink(faces=tuple(found), outer=2 * widest) if found and area > FULL_TURN * cone_area else None
 
 
 def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tuple[float, float]) -> list[FaceFacts]:

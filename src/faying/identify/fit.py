@@ -14,7 +14,7 @@ STARTS = 16
 SHOWN = 3  # combinations that are listed
 PULL = 0.01  # of the prior on a least-squares fit, in sd of the prior over sd of the scatter: it only settles ties
 REACH = 4.0  # a fit stays within so many spreads of the centre of a prior that has no ends
-SEEN, UNSEEN = 0.5, 0.9  # posterior over prior sd
+IDENTIFIED, UNIDENTIFIED = 0.5, 0.9  # posterior over prior sd
 PART = 0.3  # least weight of a parameter that a combination is named after
 
 
@@ -64,8 +64,8 @@ class Identifiability(Recorded):
     @property
     def text(self) -> str:
         """What the test sees and what it does not, in a sentence or two."""
-        seen = self._listed(np.flatnonzero(self.posterior_contraction < SEEN))
-        unseen = self._listed(np.flatnonzero(self.posterior_contraction > UNSEEN)[::-1])
+        seen = self._listed(np.flatnonzero(self.posterior_contraction < IDENTIFIED))
+        unseen = self._listed(np.flatnonzero(self.posterior_contraction > UNIDENTIFIED)[::-1])
         first = f"The test identifies {seen}." if seen else "The test identifies none of the parameters."
         return f"{first} It does not identify {unseen}." if unseen else first
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from faying.distribution import Distribution
-from faying.identify.fit import UNSEEN
+from faying.identify.fit import UNIDENTIFIED
 from faying.identify.noise import DISCREPANCY, LOSS_DISCREPANCY, LOSS_SCATTER, SCATTER
 from faying.notes import Note
 from faying.typing import Array, Mask
@@ -56,7 +56,7 @@ def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: 
         of_noise = name in (SCATTER, DISCREPANCY, LOSS_SCATTER, LOSS_DISCREPANCY)
         # of ln x for a lognormal: pressed against its upper end, x itself scatters by more than before
         left = float(prior.standardised(values).std(ddof=1) / prior.sd_standardised)
-        if left > UNSEEN and not of_noise:
+        if left > UNIDENTIFIED and not of_noise:
             text = f"The test carries no information about {name}: its posterior sd is {left:.0%} of its prior's."
             yield Note(code="not-told", text=text)
         ends = prior.quantile(np.array([END, 1 - END]))

@@ -141,8 +141,8 @@ def shape_test(ax: Any, comparison: ModalComparison, pair: int) -> Any:
     ax.plot(*moved.T, "o", color=COLOURS[1], ms=3)
     _framed(ax, comparison)
     loss = comparison.test.loss_factors[t]
-    said = "\n" + rf"$\eta$ {100 * loss:.2g} %" if np.isfinite(loss) else ""
-    ax.set_title(f"test {t + 1}: {comparison.test.frequencies[t]:.1f} Hz{said}", fontsize=SMALL, pad=2)
+    damping_text = "\n" + rf"$\eta$ {100 * loss:.2g} %" if np.isfinite(loss) else ""
+    ax.set_title(f"test {t + 1}: {comparison.test.frequencies[t]:.1f} Hz{damping_text}", fontsize=SMALL, pad=2)
     return ax
 
 

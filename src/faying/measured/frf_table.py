@@ -22,7 +22,7 @@ ROLES = {
     "magnitude": {"magnitude", "mag", "amplitude", "amp", "abs", "modulus"},
     "phase": {"phase", "angle", "arg"},
 }
-MOST_PHASE = 1e6  # rad
+MAX_PHASE = 1e6  # rad
 PAIRS = {("real", "imaginary"): "parts", ("magnitude", "phase"): "polar"}
 FORM = "a table of FRFs looks like: frequency [Hz],real [m/s^2/N],imaginary [m/s^2/N] or frequency [Hz],magnitude [dB],"
 FORM += "phase [deg]"
@@ -49,7 +49,7 @@ class Pair:
         if not self.polar:
             return np.asarray(self.scales[0] * a + 1j * self.scales[1] * b)
         most = float(np.abs(self.turn * b).max(initial=0.0))
-        if most > MOST_PHASE:
+        if most > MAX_PHASE:
             raise ReadError(f"a phase of {most:.3g} rad has lost its digits; is the column a phase?")
         size = 10 ** (a / 20) if self.decibels else a
         return np.asarray(self.scales[0] * size * np.exp(1j * self.turn * b))

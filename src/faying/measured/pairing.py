@@ -10,7 +10,7 @@ from faying.errors import InputError
 from faying.measured.mac import partners
 from faying.typing import Array, Index
 
-NEAR = 0.05  # relative difference in frequency that costs 1
+FREQUENCY_SCALE = 0.05  # relative difference in frequency that costs 1
 FARTHEST = 0.3  # relative difference in frequency up to which modes are paired at all
 MIXED = 0.9  # MAC of a mode with its own successor below which it has mixed with others
 SHARE = 0.1  # MAC with another from which that one takes part
@@ -68,8 +68,8 @@ def pair_frequencies(test: Any, model: Any, visibility: Any, *, threshold: float
     test, model, visibility = (np.atleast_2d(np.asarray(x, dtype=float)) for x in (test, model, visibility))
     apart = np.log(model[:, None, :] / test[:, :, None])
     seen = np.maximum(visibility, 1e-300)
-    alone = (np.log1p(FARTHEST) / NEAR) ** 2 - 2 * np.log10(threshold)
-    cost = (apart / NEAR) ** 2 - 2 * np.log10(np.maximum(seen, threshold))[:, None, :]
+    alone = (np.log1p(FARTHEST) / FREQUENCY_SCALE) ** 2 - 2 * np.log10(threshold)
+    cost = (apart / FREQUENCY_SCALE) ** 2 - 2 * np.log10(np.maximum(seen, threshold))[:, None, :]
     cost = cost.mean(axis=0)
     barred = (np.abs(apart).mean(axis=0) > np.log1p(FARTHEST)) | (visibility.max(axis=0) < threshold)[None]
     cost = np.where(barred, 1e6, cost)

@@ -18,7 +18,7 @@ EDGE = 0.25  # of the band, on both sides, over which the filter rises
 RINGING = 3.0  # over the width of an edge: how long the ends of the record are felt [-]
 CYCLES = 20  # least length of the stretch that gives one point
 SCATTER = 0.05  # of ln amplitude about a stretch's parabola, beyond which it is noise or more than one mode
-LEAST = 5  # points without which there is no curve
+MIN_POINTS = 5  # points without which there is no curve
 Motion = Literal["displacement", "velocity", "acceleration"]
 MOTIONS: dict[Motion, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}  # derivatives of the displacement
 MOTION_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"}
@@ -281,10 +281,10 @@ def _curve(
     ]
     good = residual[0] < SCATTER
     count = int(np.argmin(good)) if not np.all(good) else len(good)
-    if count < LEAST:
+    if count < MIN_POINTS:
         raise InputError(
-            f"{count} stretches of {cycles} cycles have a smooth decay in {band[0]:g} to {band[1]:g} Hz; {LEAST} are "
-            "needed: noise, or more than one mode in the band; narrow or move it, or take shorter stretches"
+            f"{count} stretches of {cycles} cycles have a smooth decay in {band[0]:g} to {band[1]:g} Hz; {MIN_POINTS} "
+            "are needed: noise, or more than one mode in the band; narrow or move it, or take shorter stretches"
         )
     size_fit, phase_fit = (fit[:count] for fit in fits)
     omega = phase_fit[:, 1]

@@ -39,8 +39,8 @@ def read_frf_text(
     rows: list[Complex] = []
     for name in files:
         path = Path(name)
-        own, values, said = _read(path, frequency_step, quantity)
-        notes += [*said, *end_of(path)]
+        own, values, stated = _read(path, frequency_step, quantity)
+        notes += [*stated, *end_of(path)]
         if frequency is not None and (own.shape != frequency.shape or not np.allclose(own, frequency, rtol=1e-6)):
             raise InputError(f"{path}: its frequencies are not those of {files[0]}; give files of one test")
         frequency = own

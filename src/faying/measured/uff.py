@@ -16,13 +16,13 @@ from typing import Any
 
 import numpy as np
 
+from faying.data_sets import check_data_sets
 from faying.errors import InputError, ReadError
 from faying.measured.frf import Dof, Position
 from faying.measured.uff_systems import NodalShape, UffSystem, export_note, shapes_2414, systems
 from faying.measured.uff_units import FREQUENCY, FileUnits
 from faying.measured.universal import Function, UniversalFile
 from faying.misuse import checked_call
-from faying.text import check_data_sets
 from faying.typing import Array, Index
 from faying.units import scale
 

@@ -18,7 +18,7 @@ FREQUENCY = 18
 NONE = ("", "NONE", "-", "1", "UNKNOWN", "UNDEFINED", "N/A")
 
 
-MOST_FACTOR = 1e12  # of a unit: nanometres are 1e9 a metre
+MAX_FACTOR = 1e12  # of a unit: nanometres are 1e9 a metre
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,10 +36,10 @@ class FileUnits:
         if not found:
             return None
         units = cls(length=found[0]["length"], force=found[0]["force"], words=found[0]["units_description"])
-        if not all(1 / MOST_FACTOR <= factor <= MOST_FACTOR for factor in (units.length, units.force)):
+        if not all(1 / MAX_FACTOR <= factor <= MAX_FACTOR for factor in (units.length, units.force)):
             raise ReadError(
                 f"{where}: data set 164 gives the factors {units.length} and {units.force}; they must be between "
-                f"{1 / MOST_FACTOR:g} and {MOST_FACTOR:g}. "
+                f"{1 / MAX_FACTOR:g} and {MAX_FACTOR:g}. "
                 "Export the file again with its units"
             )
         return units

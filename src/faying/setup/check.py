@@ -27,7 +27,7 @@ from faying.memory import available
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import duration
-from faying.setup.bolt_names import MOST_NAMES, grouped
+from faying.setup.bolt_names import MAX_NAMES, grouped
 from faying.setup.expected import Expected, unknowns_of
 from faying.setup.lines import key_of, line_of, line_of_fault, lines_of
 from faying.setup.reach import law_findings
@@ -39,7 +39,7 @@ from faying.study.study import Study
 from faying.style import Summary
 from faying.units import show, show_area
 
-MOST_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
+MAX_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
 MAX_ROWS = 8  # findings in a summary
 Level = Literal["fault", "note", "ok"]
 
@@ -291,7 +291,7 @@ def _meshed(
     spec = study.geometry
     if any(one.level == "fault" for one in found.out):
         return None
-    if unknowns_of(facts, spec.size, spec.face_size, named) > MOST_MESHED:
+    if unknowns_of(facts, spec.size, spec.face_size, named) > MAX_MESHED:
         return None
     made: list[Mesh] = []
     found.tried("mesh", "geometry.size", lambda: made.append(mesh_of(spec)))
@@ -407,7 +407,7 @@ def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:
         well.setdefault(f"{length} between seats that are {ring}", []).append((bolt.name, f"bolt[{k}].faces"))
         _notes(found, made.notes, f"bolt[{k}].seat")
     for words, some in well.items():
-        many = len(some) > MOST_NAMES
+        many = len(some) > MAX_NAMES
         who = f"{grouped([name for name, _ in some])} clamp" if many else ""
         for name, key in some[:1] if many else some:
             found.add("ok", "bolt", f"{who or f'bolt {name!r} clamps'} {words}", key)

@@ -132,8 +132,8 @@ def _edit(text: str, data: dict[str, Any], wanted: dict[str, Any], path: KeyPath
     if holder is not None and holder.path != path:  # an inline table, or a list of them
         return _replaced(text, holder, _at(wanted, holder.path))
     if value is None:
-        gone = [one for one in every if one.path[: len(path)] == path]
-        return _without(text, gone)
+        removed = [one for one in every if one.path[: len(path)] == path]
+        return _without(text, removed)
     if holder is not None:
         return _replaced(text, holder, value)
     if isinstance(value, dict):
@@ -151,8 +151,8 @@ def _replaced(text: str, one: Statement, value: Any) -> str:
     return text[: one.value] + written(value) + text[one.value_end :]
 
 
-def _without(text: str, gone: list[Statement]) -> str:
-    for one in reversed(gone):
+def _without(text: str, removed: list[Statement]) -> str:
+    for one in reversed(removed):
         text = text[: one.start] + text[one.end :]
     return text
 

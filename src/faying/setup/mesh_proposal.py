@@ -106,8 +106,8 @@ def _bolt(
 ) -> BoltProposal | str:
     """The bolt of a section; why there is none, where its part or its seats are not known."""
     if len(parts) != 1:
-        held = "no solid holds it, as of a beam" if not parts else f"it is on {', '.join(map(repr, parts))}"
-        return f"{section.text}: no bolt is proposed, as {held}; give the bolt by hand"
+        place_words = "no solid holds it, as of a beam" if not parts else f"it is on {', '.join(map(repr, parts))}"
+        return f"{section.text}: no bolt is proposed, as {place_words}; give the bolt by hand"
     part = parts[0]
     places = mesh.points[np.isin(mesh.numbers, section.nodes)]
     middle, axis = places.mean(axis=0), _axis(places, section)

@@ -363,7 +363,7 @@ def _share() -> str:
 
 def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[str]:
     """What is assumed of the bolts; those that are alike have one line."""
-    said = [(bolt.name, bolt.remark) for bolt in bolts]
+    remarks = [(bolt.name, bolt.remark) for bolt in bolts]
     for bolt in bolts if answers.preload is None else ():
         if bolt.force is not None:
             words = f"{bolt.force:.9g} N, the force of the file taken as newtons"
@@ -371,14 +371,14 @@ def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[s
             words = f"{show(bolt.preload, 'N')}, {_share()}"
         else:
             words = "no preload; its thread is not known: give one"
-        said.append((bolt.name, words))
-    return _alike(said)
+        remarks.append((bolt.name, words))
+    return _alike(remarks)
 
 
-def _alike(said: Iterable[tuple[str, str]]) -> list[str]:
+def _alike(remarks: Iterable[tuple[str, str]]) -> list[str]:
     """What is said of each name; names of which one thing is said have one line."""
     groups: dict[str, list[str]] = {}
-    for name, words in said:
+    for name, words in remarks:
         groups.setdefault(words, []).append(name)
     return [f"{grouped(names)}: {words}" for words, names in groups.items()]
 

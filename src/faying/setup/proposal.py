@@ -22,8 +22,8 @@ from faying.units import show
 
 GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that they are tightened to
 ACROSS = 2  # elements across the thinnest part
-MOST = 300_000  # unknowns beyond which the mesh is proposed coarser
-LEAST = 1e-3  # share of a face's area from which a contact counts
+MAX_UNKNOWNS = 300_000  # unknowns beyond which the mesh is proposed coarser
+MIN_AREA_SHARE = 1e-3  # share of a face's area from which a contact counts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,7 +212,7 @@ def touching(facts: GeometryFacts) -> list[TouchingFaces]:
         one
         for one in facts.contacts
         if facts.face(*one.first).kind == "plane"
-        and one.area >= LEAST * min(facts.face(*side).area for side in one.sides)
+        and one.area >= MIN_AREA_SHARE * min(facts.face(*side).area for side in one.sides)
     ]
     touching = [one for one in plane if abs(one.gap) <= close]
     met = {frozenset(one.parts) for one in touching}
@@ -258,7 +258,7 @@ def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]
     free, widest = available(), _thickness(thin)
     while size < widest:
         unknowns = unknowns_of(facts, size)
-        if unknowns <= MOST and (free is None or guessed(unknowns) <= free / 2):
+        if unknowns <= MAX_UNKNOWNS and (free is None or guessed(unknowns) <= free / 2):
             break
         size = min(rounded(1.1 * size, 2), widest)
         why = "coarser than two elements across the thinnest part, for memory and time; try a finer one, too"

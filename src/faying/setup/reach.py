@@ -159,10 +159,10 @@ def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | Solid
             continue  # its own seats carry all of its force
         arm = corners - place.point
         depth = arm @ place.axis
-        beside = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
+        offset = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
         level = float(np.median(depth))
         ring = seat_ring(sketch.mesh, place) if isinstance(place, BoltPlace) else None
-        within = _inside(corners, place) or (ring is not None and beside.min() <= SEAT_REACH * ring[1])
+        within = _inside(corners, place) or (ring is not None and offset.min() <= SEAT_REACH * ring[1])
         if 0 < level < place.length and within:
             out.append((place, level))
     return out

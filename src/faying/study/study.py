@@ -33,7 +33,7 @@ from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice
 from faying.study.keys.tables import STUDY
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
-from faying.study.keys.uncertain import Known, UncertainChoice, lifted, read_uncertain
+from faying.study.keys.uncertain import Known, UncertainChoice, extracted, read_uncertain
 from faying.study.results_folder import PLAIN, results_folder
 from faying.style import Summary
 
@@ -188,7 +188,7 @@ class Study(Summary):
         """Check a study given as nested dictionaries (as TOML gives them); file names are relative to `folder`."""
         faults = Faults(folder=folder)
         written = data
-        data, inside = lifted(data)
+        data, inside = extracted(data)
         top = Table(data, "", faults, STUDY)
         title = top.get("title")
         materials = read_materials(top)
@@ -289,13 +289,13 @@ def _note_lacking(
     faults: Faults, joints: tuple[JointChoice, ...], law: LawChoice, surface: SurfaceChoice | None, where: str = ""
 ) -> None:
     """Note every joint's law that its surface does not supply, before anything is read or meshed."""
-    told = {line.removeprefix(where) for line in faults.lines}
+    known_lines = {line.removeprefix(where) for line in faults.lines}
     for number, joint in enumerate(joints, start=1):
         choice = joint.surface or surface
         there = "no" if choice is None else "fractal" if choice.scan is None else "scan"
         fault = (joint.law or law).fault_without(there)
         if fault and not fault.startswith("[surface]"):
             fault = f"{f'joint[{joint.number or number}].law' if joint.law else 'law'}: {fault}"
-        if fault and fault not in told:
-            told.add(fault)
+        if fault and fault not in known_lines:
+            known_lines.add(fault)
             faults.add(where + fault)

@@ -7,7 +7,7 @@ from faying.typing import Array, Mask
 
 THRESHOLD = 40.0  # a coefficient this many times its surroundings' mean; chance reaches 20 now and then
 REACH = 5  # surroundings: coefficients up to this many steps away each way
-MOST = 20000  # more candidates than this are an uneven spectrum, not lines
+MAX_CANDIDATES = 20000  # more candidates than this are an uneven spectrum, not lines
 LARGEST = 0.25  # share of the rings of frequency that tool marks may rule
 
 
@@ -34,7 +34,7 @@ def find_lines(scan: AreaHeights, power: Array, frequency: Array) -> Mask:
     white = (flat / level[index]).reshape(power.shape)
     rows, columns = np.nonzero((white > THRESHOLD) & (frequency > 2 * lowest) & (frequency < 0.45 / max(scan.spacing)))
     marked = np.zeros(power.shape, bool)
-    if not 0 < len(rows) <= MOST:
+    if not 0 < len(rows) <= MAX_CANDIDATES:
         return marked
     offset = np.arange(-REACH, REACH + 1)
     near_rows = (rows[:, None] + offset) % power.shape[0]

@@ -12,7 +12,7 @@ from faying.surface.heights import AreaHeights
 from faying.typing import Array
 
 Map = TypeVar("Map", bound=AreaHeights)
-MOST_POINTS = 2**31  # along a side
+MAX_POINTS = 2**31  # along a side
 Seed = int | np.random.Generator
 
 
@@ -30,7 +30,7 @@ def grid_of(
     given = shape if isinstance(shape, list | tuple) else (shape,)
     if len(given) not in (1, 2):
         raise InputError(f"shape = {shown(shape)}: give (ny, nx) for a scan or n for a profile, 2 points at least")
-    counts = tuple(whole(n, "shape (points)", least=2, greatest=MOST_POINTS) for n in given)
+    counts = tuple(whole(n, "shape (points)", least=2, greatest=MAX_POINTS) for n in given)
     apart = spacing if isinstance(spacing, list | tuple) else (spacing,) * len(counts)
     if len(apart) != len(counts):
         raise InputError(f"spacing = {shown(spacing)}: give positive distances in metres, one or (dx, dy)")

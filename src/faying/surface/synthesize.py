@@ -8,7 +8,7 @@ from faying.checks import number, whole
 from faying.errors import InputError
 from faying.surface.convention import check_dimension, prefactor
 from faying.surface.scan import Profile, Scan
-from faying.surface.synthesis import MOST_POINTS, Seed, generator_of, grid_of, spectral_heights
+from faying.surface.synthesis import MAX_POINTS, Seed, generator_of, grid_of, spectral_heights
 from faying.surface.synthesis import with_missing as with_missing
 from faying.surface.synthesis import with_noise as with_noise
 from faying.typing import Array
@@ -122,7 +122,7 @@ def weierstrass_mandelbrot(
     side = max(n * d for n, d in zip(counts, steps, strict=True))
     L = side if length is None else number(length, "length", "m", least=0)
     end = 2 * max(steps) if shortest is None else number(shortest, "shortest", "m", least=0)
-    whole(ridges, "ridges", least=1, greatest=MOST_POINTS)
+    whole(ridges, "ridges", least=1, greatest=MAX_POINTS)
     if not end < L:
         raise InputError(f"shortest = {end:.4g} m, length = {L:.4g} m: the shortest wavelength is below the longest")
     M = ridges if len(counts) == 2 else 1

@@ -7,7 +7,7 @@ from faying.contact.law import ContactLaw, require
 from faying.contact.parameter import Parameter
 from faying.typing import Array, Mask
 
-LEAST, MOST = 1e-12, 0.5  # area: from 7 rms heights between the mean planes to none
+MIN_AREA, MAX_AREA = 1e-12, 0.5  # area: from 7 rms heights between the mean planes to none
 FITTED = (1e-6, 2.3e-2)  # of the area, within which a power stands for the integrals that it was fitted to
 
 OF_PROFILES = {
@@ -22,12 +22,12 @@ class AreaFractionLaw(ContactLaw):
     @property
     def closure_range(self) -> tuple[float, float]:
         """Area fractions at the least and the greatest load."""
-        return LEAST, MOST
+        return MIN_AREA, MAX_AREA
 
     def _area(self, area: ArrayLike) -> Array:
         """Area fractions as floats; InputError unless above 0 and at most a half."""
         A = np.asarray(area, float)
-        good = bool(np.all((A > 0) & (A <= MOST * (1 + 1e-9))))
+        good = bool(np.all((A > 0) & (A <= MAX_AREA * (1 + 1e-9))))
         require(self.name, good, "the real area fraction is above 0, up to 0.5")
         return A
 

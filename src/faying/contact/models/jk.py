@@ -39,7 +39,7 @@ from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.models.islands import Islands
 from faying.contact.parameter import FRACTAL, GAMMA, TEXT, Parameter
 from faying.contact.substrate import (
-    MOST_RATIO,
+    MAX_RATIO,
     SHAPE,
     MixedIslands,
     WeightedIslands,
@@ -201,8 +201,8 @@ class JK(ContactLaw):
         )
         super().__post_init__()
         need(
-            self.substrate != "computed" or self.modulus_ratio <= MOST_RATIO,
-            f'modulus_ratio = {self.modulus_ratio} with substrate="computed"; it goes up to {MOST_RATIO:g}',
+            self.substrate != "computed" or self.modulus_ratio <= MAX_RATIO,
+            f'modulus_ratio = {self.modulus_ratio} with substrate="computed"; it goes up to {MAX_RATIO:g}',
         )
         need(
             self.shear_stress == 0 or self.shear_ratio == 0,

@@ -12,7 +12,7 @@ from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import ContactPair
 
-LEAST, MOST = 1e-12, 1 - 1e-7
+MIN_AREA, MAX_AREA = 1e-12, 1 - 1e-7
 
 
 @final
@@ -48,7 +48,7 @@ class Persson(ContactLaw):
     @property
     def closure_range(self) -> tuple[float, float]:
         """Area fractions at the least and the greatest load."""
-        return LEAST, MOST
+        return MIN_AREA, MAX_AREA
 
     def at_closure(self, area: ArrayLike) -> Response:
         """Return the response at real area fractions, any shape; InputError unless above 0 and below 1."""

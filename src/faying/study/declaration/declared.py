@@ -9,7 +9,7 @@ from typing import Any
 
 from faying.contact.parameter import FILE, TEXT, Parameter
 from faying.study.declaration import values
-from faying.study.declaration.values import MOST
+from faying.study.declaration.values import MAX_COUNT
 
 REQUIRED: Any = object()
 NAME = "NAME"  # stands for the names that a user gives
@@ -17,7 +17,7 @@ NUMERAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 QUANTITY = {"$ref": "#/$defs/quantity"}
 NUMBER = {"$ref": "#/$defs/number"}
 WORDS = {"type": "string"}
-WHOLE = {"type": "integer", "minimum": 1, "maximum": MOST}
+INTEGER = {"type": "integer", "minimum": 1, "maximum": MAX_COUNT}
 
 Schema = Mapping[str, Any]
 Read = Callable[[Any, str], Any]
@@ -97,13 +97,13 @@ class Key:
         return cls("number", NUMBER, says, default, read=read, allowed=f"{least:g} to {greatest:g}")
 
     @classmethod
-    def count(cls, says: str, default: Any = None, *, most: int = MOST) -> "Key":
+    def count(cls, says: str, default: Any = None, *, most: int = MAX_COUNT) -> "Key":
         """A whole number from 1."""
 
         def read(value: Any, name: str) -> int:
             return values.whole_number(value, name, most)
 
-        return cls("whole number", WHOLE | {"maximum": most}, says, default, read=read, allowed=f"1 to {most:,}")
+        return cls("whole number", INTEGER | {"maximum": most}, says, default, read=read, allowed=f"1 to {most:,}")
 
     @classmethod
     def truth(cls, says: str, default: bool = False) -> "Key":

@@ -5,7 +5,7 @@ from typing import Any
 from faying import units
 from faying.errors import InputError
 
-MOST = 1_000_000  # of what is counted, where a key says no less
+MAX_COUNT = 1_000_000  # of what is counted, where a key says no less
 MOST_FRICTION, MOST_LOSS = 10.0, 2.0  # coefficient of friction, loss factor [-]
 # least and greatest size that a number of a unit has in any bolted structure: beyond them a unit or a power is wrong
 RANGES = {
@@ -63,7 +63,7 @@ def number(value: Any, name: str) -> float:
     return float(value)
 
 
-def whole_number(value: Any, name: str, most: int = MOST) -> int:
+def whole_number(value: Any, name: str, most: int = MAX_COUNT) -> int:
     """A whole number from 1 to `most`. Raises InputError for any other value."""
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
         raise InputError(f"{name} = {value!r} should be a whole number from 1 to {most:,}")

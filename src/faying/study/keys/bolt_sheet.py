@@ -10,7 +10,7 @@ from faying.study.declaration.declared import QUANTITY, WORDS, Declared, Key, li
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity
 
-MOST_FACTOR = 10.0  # greatest tightening factor that is not a slip of the pen
+MAX_FACTOR = 10.0  # greatest tightening factor that is not a slip of the pen
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,7 +149,7 @@ BOLT_SHEET: Declared = {
         'Way of tightening, as of [uncertain] preload; "torque wrench, friction estimated" where '
         "left out and nothing scatters."
     ),
-    "tightening_factor": _number(1.0, MOST_FACTOR, "Greatest over least assembly preload, in place of tightening."),
+    "tightening_factor": _number(1.0, MAX_FACTOR, "Greatest over least assembly preload, in place of tightening."),
     "thread_friction": _number(
         0.02, 1.0, "Coefficient of friction in the thread; that of the bolt, or 0.12, where left out."
     ),

@@ -8,7 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.geometry.face_facts import Point
 from faying.geometry.selectors import AXES, WITHIN, Selector
-from faying.study.declaration.declared import REQUIRED, WHOLE, WORDS, Declared, Key, listed
+from faying.study.declaration.declared import INTEGER, REQUIRED, WORDS, Declared, Key, listed
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import direction, text, whole_number
 
@@ -124,7 +124,7 @@ SELECTOR: Declared = {
     "within": Key.quantity("m", "The farthest that this point may lie from the face; 1 mm where left out."),
     "number": Key(
         "a whole number from 1 to 1,000,000, or a list of them",
-        {"anyOf": [WHOLE, listed(WHOLE, 1)]},
+        {"anyOf": [INTEGER, listed(INTEGER, 1)]},
         (
             "Number of the face among those of its part, as `faying faces` lists them; or those of "
             "several faces that are meant together, such as [3, 5]."

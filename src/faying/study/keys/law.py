@@ -27,7 +27,7 @@ class LawChoice:
     model: str = AUTO
     counterbody: Literal["part", "rigid"] = "part"
     given: Mapping[str, object] = field(default_factory=dict)
-    meant: frozenset[str] = field(
+    misspelt_keys: frozenset[str] = field(
         default=frozenset(), repr=False, compare=False
     )  # with a fault of their own, or misspelt
 
@@ -50,17 +50,17 @@ class LawChoice:
             elif (value := table.parameter(name, parameter)) is not None:
                 given[name] = value
         moved = _note_misplaced(table, kind)
-        meant = {name for name in kind.law.entries() if name in table.data and name not in given}
+        misspelt_keys = {name for name in kind.law.entries() if name in table.data and name not in given}
         for key in table.data:
             if not table.known(key):
-                meant |= set(get_close_matches(key, kind.law.entries(), n=1))
+                misspelt_keys |= set(get_close_matches(key, kind.law.entries(), n=1))
         table.close()
         # keys of another law: it may be meant, which needs no surface
         choice = cls(
             model=kind.label,
             counterbody=counterbody,
             given=given,
-            meant=frozenset(kind.law.entries() if moved else meant),
+            misspelt_keys=frozenset(kind.law.entries() if moved else misspelt_keys),
         )
         if not choice.missing:
             steel = CATALOGUE["45 steel"]  # faults of a law that needs no surface show at once, whatever the material
@@ -70,7 +70,7 @@ class LawChoice:
     @classmethod
     def unknown(cls) -> "LawChoice":
         """Stands for a law whose fault is noted already, so that nothing more is said of it."""
-        return cls(meant=frozenset(find(cls.model).law.entries()))
+        return cls(misspelt_keys=frozenset(find(cls.model).law.entries()))
 
     @property
     def kind(self) -> LawKind:
@@ -95,7 +95,7 @@ class LawChoice:
         there = {"no": 0, "fractal": 1, "scan": 3}[surface]
         wanted = {name: rank.index(RoughSurface.needed_for([entries[name].surface])) for name in self.missing}
         short = [name for name in self.missing if not entries[name].surface or wanted[name] > there]
-        short = [name for name in short if name not in self.meant]
+        short = [name for name in short if name not in self.misspelt_keys]
         if surface == "no" and set(short) & {*OF_SURFACE, "scan"}:
             return f'[surface] is missing; model = "{self.model.lower()}" takes its inputs from a surface there'
         return self.kind.describe_missing(short, with_scan=surface == "scan") if short else ""

@@ -96,7 +96,7 @@ class Known:
     parts: Mapping[str, str]
 
 
-def lifted(data: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
+def extracted(data: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
     """Take texts that scatter out of the places of numbers: the study with their medians, and key -> text.
 
     A text that its number cannot have is left where it is, for the reader to refuse.
@@ -165,11 +165,11 @@ def _parameter(key: str) -> Parameter:
 def read_uncertain(
     table: Mapping[str, Any] | None, inside: Mapping[str, str], known: Known, faults: Faults
 ) -> UncertainChoice | None:
-    """Read [uncertain] and the texts that were lifted out of their places; every fault is noted.
+    """Read [uncertain] and the texts that were taken out of their places; every fault is noted.
 
     Args:
         table: The table; None where there is none.
-        inside: Texts by key, from `lifted`.
+        inside: Texts by key, from `extracted`.
         known: What the keys may name.
         faults: Where faults go, and the files that are read.
     """

@@ -20,16 +20,16 @@ WAYS = (*SIZES, "process", "from")  # in which the size can be said
 def read_waviness(table: Table) -> Waviness | None:
     """Read waviness = {...}; None where there is no size that can be used."""
     sizes, of_waves = ({name: table.get(name) for name in names} for names in (WAYS, OF_WAVES))
-    said = [way for way in WAYS if way in table.data]
+    stated = [way for way in WAYS if way in table.data]
     table.close()
-    if len(said) != 1:
+    if len(stated) != 1:
         table.faults.add(
-            f"{table.where} has {'no size' if not said else 'sizes by ' + ' and '.join(said)}; give one of "
+            f"{table.where} has {'no size' if not stated else 'sizes by ' + ' and '.join(stated)}; give one of "
             'Wq = "1 um", Wa = "0.8 um", flatness = "20 um", '
             f'process = "{next(iter(PROCESSES))}" (or {", ".join([*PROCESSES][1:])}), from = "scan"'
         )
         return None
-    (way,) = said
+    (way,) = stated
     if sizes[way] is None:
         return None
     values = {name: value for name, value in of_waves.items() if value is not None}

@@ -192,7 +192,7 @@ def _resized(scan: Scan | Profile, lateral: Lateral) -> Scan | Profile:
     return replace(scan, spacing=steps[0], notes=notes)
 
 
-FEWEST_ALIKE = 3  # heights that are exactly alike, below which they are spikes
+MIN_ALIKE = 3  # heights that are exactly alike, below which they are spikes
 
 
 def without_sentinels(scan: Scan | Profile) -> Scan | Profile:
@@ -204,7 +204,7 @@ def without_sentinels(scan: Scan | Profile) -> Scan | Profile:
     known = scan.heights[np.isfinite(scan.heights)]
     if not known.size:
         return scan
-    ends = [end for end in (float(known.min()), float(known.max())) if np.sum(known == end) >= FEWEST_ALIKE]
+    ends = [end for end in (float(known.min()), float(known.max())) if np.sum(known == end) >= MIN_ALIKE]
     for some in (ends, *([end] for end in ends)):
         rest = known[~np.isin(known, some)]
         if not some or 2 * rest.size < known.size:
