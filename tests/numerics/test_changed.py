@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array, random_array
 
-from faying.numerics.changed import UpdatedStiffness, whole
+from faying.numerics.changed import UpdatedStiffness, assembled
 from faying.numerics.modal_reanalysis import ModalReanalysis
 from faying.numerics.modes import lowest_modes
 
@@ -28,8 +28,8 @@ def test_products_diagonal_and_sum_are_those_of_the_sum(pair):
     for vectors in (rng.standard_normal(200), rng.standard_normal((200, 4))):
         assert both @ vectors == pytest.approx(total @ vectors)
     assert both.diagonal() == pytest.approx(np.diag(total))
-    assert whole(both).toarray() == pytest.approx(total)
-    assert whole(pair[0]) is pair[0]
+    assert assembled(both).toarray() == pytest.approx(total)
+    assert assembled(pair[0]) is pair[0]
 
 
 def test_large_matrices_too():
@@ -47,7 +47,7 @@ def test_modes_of_a_changed_stiffness_are_those_of_the_sum(pair):
     near = ModalReanalysis(modes, pair[0], mass, rigid=0)
     both = UpdatedStiffness(before=pair[0], change=pair[1])
     found = near.under(both, 4, tolerance=1e-9)
-    exact = np.sqrt(np.linalg.eigvalsh(whole(both).toarray())[:4]) / (2 * np.pi)
+    exact = np.sqrt(np.linalg.eigvalsh(assembled(both).toarray())[:4]) / (2 * np.pi)
     assert found.frequencies[:4] == pytest.approx(exact, rel=1e-8)
     bare = near.under(both, 4, tolerance=1e-9, shapes=False)
     assert bare.frequencies[:4] == pytest.approx(exact, rel=1e-8)
