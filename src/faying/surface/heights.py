@@ -65,7 +65,7 @@ def _describe(scan: "AreaHeights | LineHeights") -> None:
     kind = type(scan).__name__
     instance(scan.source, str, f"{kind}: source", "give the name of the file or recipe as text")
     instance(
-        scan.instrument, Instrument, f"{kind}: instrument", "give a faying.surface.scan.Instrument, or leave it out"
+        scan.instrument, Instrument, f"{kind}: instrument", "give a faying.surface.heights.Instrument, or leave it out"
     )
     for name in ("history", "notes"):
         lines = getattr(scan, name)
