@@ -12,6 +12,7 @@ import click
 import pytest
 
 from faying.cli.main import cli
+from tests.helpers.mpi import missing_mpi
 
 ROOT = Path(__file__).parent.parent
 SITE = ROOT / "docs" / "generated"  # made by a build of the site
@@ -60,8 +61,10 @@ def test_commands(page, checkout):
             continue
         if line == "app":  # it serves until it is ended; tests/app has it
             continue
-        # no cluster is here: tests/study has one; twelve runs are minutes: tests/form/test_waviness.py has the draws
-        if "--dask" in shlex.split(line) or "waviness_seed" in line:
+        # no cluster is here, and maybe no MPI: tests/sweeps and tests/mpi have them
+        # twelve runs are minutes: tests/form/test_waviness.py has the draws
+        of_mpi = "--mpi" in shlex.split(line) and missing_mpi()
+        if "--dask" in shlex.split(line) or "waviness_seed" in line or of_mpi:
             named, *words = shlex.split(line)
             command = cli.get_command(click.Context(cli), named)
             command.make_context(named, words)  # raises where the words are wrong

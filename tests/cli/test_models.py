@@ -78,13 +78,15 @@ def test_one_scan_all_models(tmp_path: Path) -> None:
         "GW-KE",
         "GW-ZMC",
         "GW-JG",
+        "CMY",
+        "Mikic",
     ):
         assert f"\n  {name} " in out
     assert out.count("max / min") == out.count("times that of the half-space") == 2
     assert "without a stiffness of their own: JS, MB, WK, YK" in out
     assert "<svg" in figure.read_text()
     rows = table.read_text().splitlines()
-    assert len(rows) == 1 + 9 * 13
+    assert len(rows) == 1 + 9 * 15
     assert rows[0].startswith("law,pressure [Pa],area [-],k_n [Pa/m]")
 
 

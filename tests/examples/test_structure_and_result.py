@@ -118,7 +118,7 @@ structure = faying.Structure(
 state: faying.State = structure.solve(preload={"left": "8 kN"}, modes=15)
 print(state.modes.frequencies.max(), state.modes.damping, state.pressures["joint 1"].mean())
 state.plot_pressure().set_title("pressure")
-state.modes.plot(1).figure.savefig("mode.png")
+state.modes.plot(1).set_title("mode 1")
 result = faying.run("study.toml")
 result.plot()[0].set_xlabel("preload")
 result.save("result.nc")

@@ -11,7 +11,8 @@ from faying.mpi.modes import programs
 
 
 @cache
-def _missing():
+def missing_mpi():
+    """What is missing for processes of MPI, in words; None where nothing is."""
     try:
         programs()
     except faying.InputError as fault:
@@ -22,8 +23,8 @@ def _missing():
 @pytest.fixture
 def mpi(monkeypatch, tmp_path):
     """The folder where the pieces lie meanwhile; two processes may share a core, started by root."""
-    if _missing():
-        pytest.skip(_missing())
+    if missing_mpi():
+        pytest.skip(missing_mpi())
     monkeypatch.setenv("OMPI_ALLOW_RUN_AS_ROOT", "1")
     monkeypatch.setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
     monkeypatch.setenv("OMPI_MCA_rmaps_base_oversubscribe", "1")

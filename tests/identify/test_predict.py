@@ -16,6 +16,7 @@ from faying.identify.prediction import Prediction
 from faying.identify.sampling import evaluate
 from faying.identify.sampling.ensemble import Ensemble, Inputs
 from faying.identify.sampling.evaluate import Evaluator, Reduced
+from faying.identify.sampling.store import SampleStore
 from faying.joint.modal import ModesChoice
 from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes
@@ -160,11 +161,11 @@ def test_an_interrupted_prediction_goes_on(plan, tmp_path, monkeypatch):
             raise KeyboardInterrupt
         kept(self, what, number, rows)
 
-    kept = module.Store.keep_rows
-    monkeypatch.setattr(module.Store, "keep_rows", stops)
+    kept = SampleStore.keep_rows
+    monkeypatch.setattr(SampleStore, "keep_rows", stops)
     with pytest.raises(KeyboardInterrupt):
         faying.predict(plan, samples=64, seed=1, out=out)
-    monkeypatch.setattr(module.Store, "keep_rows", kept)
+    monkeypatch.setattr(SampleStore, "keep_rows", kept)
     monkeypatch.setattr(Reduction, "of", None)  # the bases are not made again
     found = faying.predict(plan, samples=64, seed=1, out=out)
     assert found.answered == 64
