@@ -8,11 +8,11 @@ from functools import wraps
 from html import escape
 from io import BytesIO
 from pathlib import Path
-from textwrap import shorten
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from faying.errors import InputError
 from faying.files import make_folder, write_atomically
+from faying.text import cut
 from faying.typeset import unit as typeset_unit
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ def plain_numbers(axis: Any) -> None:
 
 def headline(text: str, most: int = 60) -> str:
     """A title that a user gave, cut where it is long."""
-    return plain(shorten(text, most, placeholder=" ..."))
+    return plain(cut(text, most))
 
 
 def percent(share: float) -> str:

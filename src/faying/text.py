@@ -3,8 +3,9 @@
 import csv
 import io
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Sized
 from math import isfinite
+from textwrap import shorten
 from typing import Any
 
 from faying.typing import Index
@@ -16,6 +17,16 @@ def listed(names: Iterable[str], most: int = MAX_NAMES) -> str:
     """Names with commas; how many more there are, where they are many."""
     every = list(names)
     return ", ".join(every[:most]) + (f" and {len(every) - most} more" if len(every) > most else "")
+
+
+def cut(text: str, most: int = 100) -> str:
+    """A text on one line, its end left out where it is long."""
+    return shorten(text, most, placeholder=" ...")
+
+
+def notes_row(notes: Sized) -> dict[str, str]:
+    """The row of a summary that says how many notes there are; none without notes."""
+    return {"notes": f"{len(notes)}, in .notes"} if len(notes) else {}
 
 
 def titled(kind: str, name: str) -> str:

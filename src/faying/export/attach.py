@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from textwrap import shorten
 from typing import Any, Literal
 
 import numpy as np
@@ -29,7 +28,7 @@ from faying.study.keys.joint import JointChoice
 from faying.study.pressure import read_pressure
 from faying.study.study import Study
 from faying.style import Summary
-from faying.text import few
+from faying.text import cut, few
 from faying.typing import Array
 from faying.units import positive, show_area
 
@@ -76,7 +75,7 @@ class Attachment(Summary):
             "area": show_area(self.interface.area),
             "stiffness": f"normal {k_n:.4g} N/m, tangential {k_t:.4g} N/m in all",
         }
-        rows |= {f"note {k}": shorten(note, 100, placeholder=" ...") for k, note in enumerate(self.notes[:6], 1)}
+        rows |= {f"note {k}": cut(note) for k, note in enumerate(self.notes[:6], 1)}
         return f"Joint between {' and '.join(self.deck.faces)}", rows
 
     def to_dict(self) -> dict[str, Any]:

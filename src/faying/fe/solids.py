@@ -12,7 +12,7 @@ from faying.fe.sides import Blocks as Blocks
 from faying.fe.sides import nodes_of
 from faying.notes import Note
 from faying.style import Summary
-from faying.text import listed
+from faying.text import listed, notes_row
 from faying.typing import Array, Index, Mask
 from faying.units import show
 
@@ -122,7 +122,7 @@ class SolidMesh(Summary):
             "volume": f"{volume * 1e9:.6g} mm^3",
             "mass": f"{volume * 1e3:.4g} kg for each 1000 kg/m^3 of density",
         }
-        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+        return head, rows | notes_row(self.notes)
 
     def face(self, name: str) -> Blocks:
         """Blocks of a named face, each (f, a). Raises InputError that lists the faces there are."""

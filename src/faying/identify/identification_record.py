@@ -14,6 +14,7 @@ from faying.netcdf import Group, Variable
 from faying.notes import Note
 from faying.result.fields import RECORD, Recorded, from_group, listed, optional, to_group, variable
 from faying.text import listed as joined
+from faying.text import notes_row
 from faying.typing import Array, Mask
 from faying.units import show
 
@@ -93,7 +94,7 @@ class IdentificationRecord(Recorded):
         if self.laws:
             rows["laws"] = joined(f"{law.name} {law.weight:.0%}" for law in self.laws)
         rows["least squares"] = f"{self.fit.misfit:.2%} rms"
-        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+        return head, rows | notes_row(self.notes)
 
     @property
     def mean(self) -> Array:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from statistics import NormalDist
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -19,11 +19,8 @@ from faying.result.fields import Recorded, load_texts, optional, variable
 from faying.result.fields import listed as numbers
 from faying.result.provenance import Provenance
 from faying.result.run_record import preload_slope
-from faying.text import listed
+from faying.text import listed, notes_row
 from faying.typing import Array
-
-if TYPE_CHECKING:
-    pass
 
 LEVELS = (0.05, 0.5, 0.95)
 # normal scores in the middle of equal shares of the probability, scaled to a variance of 1
@@ -107,7 +104,7 @@ class PredictionRecord(Recorded):
             rows["more modes"] = str(len(middle) - shown)
         inside, count = self.covered
         rows |= {"test": f"{inside} of {count} frequencies between 5 and 95 %"} if count else {}
-        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+        return head, rows | notes_row(self.notes)
 
     @property
     def names(self) -> tuple[str, ...]:

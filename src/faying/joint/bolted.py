@@ -30,7 +30,7 @@ from faying.notes import Note
 from faying.numerics.constraint import constrain
 from faying.numerics.solve import BY_PARTS, Factoriser, chosen, is_mpi
 from faying.style import Summary
-from faying.text import listed, titled
+from faying.text import listed, notes_row, titled
 from faying.typing import Array, Index
 from faying.units import show
 
@@ -503,5 +503,5 @@ def structure_rows(structure: BoltedStructure) -> tuple[str, dict[str, str]]:
     except FayingError as fault:  # a bolt that does not fit, which the solution says as well
         rows["fault"] = shortened(str(fault))
     else:
-        rows |= {"notes": f"{len(notes)}, in .notes"} if notes else {}
+        rows |= notes_row(notes)
     return head, rows

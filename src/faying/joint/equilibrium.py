@@ -284,7 +284,7 @@ class Equilibrium(ABC):
         return self._admissible(np.asarray(force))
 
     def _tangents(self, u: Array, slip_states: list[StickSlip]) -> list[tuple[Any, Array, Array]]:
-        """For each joint: trace, normal stiffness (q,) and tangential tangent (q, 2, 2), both times the area."""
+        """For each joint: interface, normal stiffness (q,) and tangential tangent (q, 2, 2), both times the area."""
         out = []
         for (move, _, k_n), (interface, _), slip_state in zip(self._state(u), self.joints, slip_states, strict=True):
             out.append(

@@ -24,7 +24,7 @@ from faying.notes import Note, percent
 from faying.numerics.damped import DampedModes, damped_near
 from faying.numerics.modes import Modes
 from faying.style import Summary
-from faying.text import titled
+from faying.text import notes_row, titled
 from faying.typing import Array
 from faying.units import load_text, positive, show
 
@@ -197,7 +197,7 @@ class State(Summary):
         if len(joints) > 2:
             rows["more joints"] = str(len(joints) - 2)
         rows |= self.modes.rows(7)
-        rows |= {"notes": f"{len(self.notes)}, in .notes"} if self.notes else {}
+        rows |= notes_row(self.notes)
         return head, rows
 
     @checked_call

@@ -2,7 +2,7 @@
 
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -13,12 +13,9 @@ from faying.misuse import checked_call
 from faying.notes import Note
 from faying.result.fields import Recorded, declared, in_units, listed, variable
 from faying.result.provenance import Provenance
-from faying.text import csv_text
+from faying.text import csv_text, notes_row
 from faying.typing import Array, Index
 from faying.units import in_mm, load_text
-
-if TYPE_CHECKING:
-    pass
 
 MAX_POINTS = 6  # of a curve that a summary has a line for
 DECAY = 200  # points of a ring-down
@@ -154,7 +151,7 @@ class BackboneRecord(Recorded):
                 f"{self.frequency[k]:.3f} Hz, damping ratio {self.damping[k]:.3g}, slips on {self.slipping[k]:.0%}"
             )
         rows["ends"] = self.reason
-        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+        return head, rows | notes_row(self.notes)
 
     @property
     def friction_text(self) -> str:

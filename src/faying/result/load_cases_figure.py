@@ -1,15 +1,12 @@
 """The figures of load cases: pressure on a joint under each of them, and where it opens."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from faying.joint.figure import in_plane, painted_points
 from faying.result.load_cases import LoadCases
 from faying.style import WIDE, drawing, new_panels
-
-if TYPE_CHECKING:
-    pass
 
 MAX_PANELS = 12  # the preload, and cases
 COLUMNS = 3

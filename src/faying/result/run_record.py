@@ -19,7 +19,7 @@ from faying.result.bolts import BoltNumbers
 from faying.result.fields import Recorded, in_units, load_texts, optional, variable
 from faying.result.interval import Interval
 from faying.result.provenance import Provenance
-from faying.text import csv_text, listed
+from faying.text import csv_text, listed, notes_row
 from faying.typing import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -301,7 +301,7 @@ class RunRecord(Recorded):
             paired = np.isfinite(error)
             mean = f", mean deviation {np.mean(error[paired]):.2%}" if paired.any() else ""
             rows[c.reference] = f"{paired.sum()} of {paired.size} frequencies paired{mean}"
-        return head, rows | ({"notes": f"{len(self.notes)}, in .notes"} if self.notes else {})
+        return head, rows | notes_row(self.notes)
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -5,7 +5,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from textwrap import shorten
 from typing import Any, Literal, get_args
 
 from faying.bolt.bolt import Bolt, BoltPlace, each_in_its_place
@@ -37,6 +36,7 @@ from faying.study.keys.face import place_name
 from faying.study.keys.geometry import mesh_of
 from faying.study.study import Study
 from faying.style import Summary
+from faying.text import cut
 from faying.units import show, show_area
 
 MAX_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
@@ -90,9 +90,7 @@ class Checked(Summary):
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return how many faults and notes there are, the first of them, and what a run needs."""
         grave = [one for one in self.by_level if one.level != "ok"]
-        rows = {
-            f"{one.level} {k}": shorten(one.text, 100, placeholder=" ...") for k, one in enumerate(grave[:MAX_ROWS], 1)
-        }
+        rows = {f"{one.level} {k}": cut(one.text) for k, one in enumerate(grave[:MAX_ROWS], 1)}
         rows |= {"more": f"{len(grave) - MAX_ROWS}, in .findings"} if len(grave) > MAX_ROWS else {}
         if self.expected is not None:
             need = self.expected

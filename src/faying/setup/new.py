@@ -4,7 +4,6 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from textwrap import shorten
 from typing import Any
 
 from faying.errors import InputError
@@ -20,6 +19,7 @@ from faying.setup.mesh_proposal import propose_mesh
 from faying.setup.proposal import GRADE, SHARE, BoltProposal, DowelProposal, Proposal, propose
 from faying.setup.template import SCHEMA, surface
 from faying.style import Summary
+from faying.text import cut
 from faying.units import show, show_area, si
 
 STEEL = "S355"
@@ -60,7 +60,7 @@ class Written(Summary):
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return what was found, the files, and the first of what was assumed."""
         rows = {"written": ", ".join(map(str, self.files))}
-        rows |= {f"assumed {k}": shorten(line, 100, placeholder=" ...") for k, line in enumerate(self.assumed[:8], 1)}
+        rows |= {f"assumed {k}": cut(line) for k, line in enumerate(self.assumed[:8], 1)}
         rows |= {"more": f"{len(self.assumed) - 8}, in .assumed"} if len(self.assumed) > 8 else {}
         return f"Study of {self.proposal.facts.file}: {self.found}", rows
 
