@@ -75,15 +75,6 @@ def test_no_module_passes_400_statements(path):
     assert sum(isinstance(node, ast.stmt) for node in ast.walk(ast.parse(path.read_text()))) <= 400
 
 
-MOST_MODULES = 22  # of a folder, which a reader takes in at one look
-
-
-def test_no_folder_holds_more_modules_than_a_look_takes_in():
-    folders = {path.parent for path in MODULES}
-    counts = {str(f.relative_to(SOURCE)): len(list(f.glob("*.py"))) for f in folders}
-    assert {name: count for name, count in counts.items() if count > MOST_MODULES} == {}
-
-
 # functions of more than 8 parameters, each with its reason; none is longer than 60 lines beside its docstring
 PUBLIC = "public function of Python users, who name its options"
 EXCEPTIONS = {

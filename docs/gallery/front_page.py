@@ -23,7 +23,6 @@ from faying.result.level_figure import damping_of
 from faying.style import COLOURS, SOFT, WIDE, drawing, new_figure, save
 from faying.units import load_text
 
-ROOT = Path(__file__).parents[2]
 MODE = 0  # of the test, from 0
 
 
@@ -109,6 +108,7 @@ def draw(result: Result) -> Any:
 
 if __name__ == "__main__":
     # a result that is there already may be named; the site's build computes it
-    study = ROOT / "examples" / "t-specimen" / "study.toml"
+    root = Path(sys.argv[0]).resolve().parents[2]  # the gallery has no __file__
+    study = root / "examples" / "t-specimen" / "study.toml"
     found = Result.load(sys.argv[1]) if sys.argv[1:] else faying.run(study)
-    save(draw(found), ROOT / "docs" / "figures" / "t-specimen.png")
+    save(draw(found), root / "docs" / "figures" / "t-specimen.png")
