@@ -10,7 +10,7 @@ import pytest
 
 import faying
 from faying import units
-from faying.answer.bolt_loads import BoltLoad
+from faying.answer.bolt_loads import AtPreload, BoltLoad
 from faying.answer.bolt_sheet import DEFAULT_WAY, bolt_sheet, choice_for
 from faying.answer.run import run
 from faying.cli.main import main
@@ -46,11 +46,12 @@ HAND = {
     "F_Mmin": lambda v: v["F_V"] - v["s"] * v["F_V"],
     "F_SAu": lambda v: v["Phi"] * v["F_Au"] + v["dF_u"],
     "F_SAo": lambda v: v["dF_o"] + v["Phi"] * v["F_Ao"],
+    "F_SAM": lambda v: v["dF_M"] + v["Phi"] * v["F_Ao"],
     "F_Mreq": lambda v: v["F_Kreq"] + v["F_Ao"] - v["Phi"] * v["F_Ao"] + v["dF_P"] + v["F_Zd"] + v["F_thd"],
     "F_Mmax": lambda v: v["alpha_A"] * v["F_Mmin"],
     "M_G": lambda v: v["F_Mmax"] * (0.16 * v["P"] + 0.58 * v["d_2"] * v["mu_G"]),
     "sigma_redM": lambda v: mises(v["F_Mmax"] / (pi * v["d_0"] ** 2 / 4), 12 * v["M_G"] / (pi * v["d_0"] ** 3)),
-    "F_Smax": lambda v: v["F_Mmax"] + v["F_SAo"] + v["F_thg"],
+    "F_Smax": lambda v: v["F_Mmax"] + v["F_SAM"] + v["F_thg"],
     "sigma_redB": lambda v: mises(v["F_Smax"] / (pi * v["d_0"] ** 2 / 4), 8 * v["M_G"] / (pi * v["d_0"] ** 3)),
     "sigma_ASV": lambda v: (127.5 / (v["d"] * 1e3) + 38.25) * 1e6,
     "sigma_a": lambda v: (v["F_SAo"] - v["F_SAu"]) / 2 / v["A_S"],
@@ -303,21 +304,34 @@ ICY = {"name": "icy", "temperature": {"bolt": "-25 K"}}
 HELD = {"face": {"part": "lower", "normal": "-z", "all": True}}
 
 
+def cases_at(made, preload, loads):
+    """The load cases at a preload [N] of the one bolt."""
+    bolt = BOLT | {"preload": f"{preload!r} N"}
+    return faying.load_cases(made(bolt=bolt, support=[HELD], load=loads), modes=False)
+
+
 def test_loads_of_the_sheet_are_those_of_a_case(made):
     """Working load, load across, share and loss by heat are those that the case has; all rows follow from them."""
     study = made(bolt_sheet={"load": ["pull", "press", "icy"]}, support=[HELD], load=[PULL, OTHER, ICY])
     (sheet,) = bolt_sheet(study).sheets
     bare = {key: value for key, value in PULL.items() if key != "temperature"}
     warm = {"name": "warm", "temperature": PULL["temperature"]}
-    found = faying.load_cases(made(support=[HELD], load=[PULL, OTHER, bare | {"name": "cold"}, warm, ICY]), modes=False)
-    change = dict(zip(found.cases, found.bolt_force[:, 0] - found.bolt_preload[0], strict=True))
+    loads = [PULL, OTHER, bare | {"name": "cold"}, warm, ICY]
+
+    def at(preload):
+        found = cases_at(made, preload, loads)
+        return found, dict(zip(found.cases, found.bolt_force[:, 0] - found.bolt_preload[0], strict=True))
+
+    _, change = at(6e3)
+    found, at_least = at(sheet.row("F_Mmin").result.value)  # no embedding is known
+    _, at_greatest = at(sheet.row("F_Mmax").result.value)
     values = {one.symbol: one.value for row in sheet.rows for one in row.inputs}
     assert (values["F_Au"], values["F_Ao"]) == pytest.approx((-400, 900), rel=1e-6)
-    cold = found.index("cold")
-    assert values["F_Q"] == pytest.approx(found.transverse_load[cold, 0] + found.bolt_shear[cold, 0], rel=1e-4)
-    assert values["F_thg"] == pytest.approx(change["icy"], rel=1e-6)  # of a bolt that shrinks
+    assert values["F_Q"] == pytest.approx(150, rel=1e-4)  # what holds the upper part along the joint
+    assert values["F_Q"] == pytest.approx(found.transverse_load[found.index("cold"), 0], rel=1e-4)
+    assert values["F_thg"] == pytest.approx(at_greatest["icy"], rel=1e-6)  # of a bolt that shrinks
     assert values["F_thg"] > 100
-    assert values["F_th"] == pytest.approx(-change["warm"], rel=1e-6)
+    assert values["F_th"] == pytest.approx(-at_least["warm"], rel=1e-6)
     assert values["F_th"] > 100
     # heat and force act on a joint that hardens: the share of the force depends on both by a little
     assert sheet.row("Phi").result.value * 900 == pytest.approx(change["pull"] - change["warm"], rel=1e-6)
@@ -328,8 +342,9 @@ def test_loads_of_the_sheet_are_those_of_a_case(made):
             assert row.result.value == pytest.approx(HAND[row.result.symbol](given), rel=1e-9)
     assert "of load 'pull' and 'press' and 'icy'" in sheet.row("F_Smax").inputs[2].name
     least, most = (sheet.row(symbol).result.value for symbol in ("F_SAu", "F_SAo"))
-    assert most == pytest.approx(change["cold"], rel=0.05)
+    assert most == pytest.approx(at_least["pull"] - at_least["warm"], rel=1e-6)
     assert least < -1  # of the case that presses
+    assert sheet.row("F_SAM").result.value == pytest.approx(at_greatest["pull"] - at_greatest["warm"], rel=1e-6)
 
 
 def test_a_case_may_have_the_name_that_the_sheet_gives_to_heat_alone(made):
@@ -359,10 +374,14 @@ def test_another_case_never_takes_stress_from_a_bolt(made):
         bolt_sheet(made(bolt_sheet={"load": names}, **loads)).sheets[0]
         for names in (["pull", "bend"], ["pull"], ["bend"])
     )
-    found = faying.load_cases(made(**loads), modes=False)
-    change = found.bolt_force[:, 0] - found.bolt_preload[0]
+    change = {
+        symbol: found.bolt_force[:, 0] - found.bolt_preload[0]
+        for symbol, preload in (("F_SAo", "F_Mmin"), ("F_SAM", "F_Mmax"))
+        for found in [cases_at(made, both.row(preload).result.value, [bare, bend])]
+    }
     for sheet, rows in ((both, [0, 1]), (one, [0]), (other, [1])):
-        assert sheet.row("F_SAo").result.value == pytest.approx(max(*change[rows], 0.0), rel=1e-4)
+        for symbol, found in change.items():
+            assert sheet.row(symbol).result.value == pytest.approx(max(*found[rows], 0.0), rel=1e-4)
         assert both.row("F_Smax").result.value >= sheet.row("F_Smax").result.value * (1 - 1e-9)
 
 
@@ -381,7 +400,7 @@ def test_faults_of_a_load_in_the_table(made, table, text):
 
 def test_a_load_factor_below_0_is_explained_and_taken_as_it_is(made, monkeypatch):
     """A load that relieves the joint round a bolt may take force from the bolt as well, where parts bend."""
-    found = BoltLoad(
+    found = AtPreload(
         axial=(0.0, 400.0),
         transverse=0.0,
         additional=(-4.0, 0.0),
@@ -390,7 +409,9 @@ def test_a_load_factor_below_0_is_explained_and_taken_as_it_is(made, monkeypatch
         thermal_loss=None,
         thermal_gain=0.0,
     )
-    monkeypatch.setattr("faying.answer.bolt_sheet.bolt_loads", lambda *_: {0: found})
+    monkeypatch.setattr(
+        "faying.answer.bolt_sheet.bolt_loads", lambda *_: {0: BoltLoad(least=found, mean=found, greatest=found)}
+    )
     sheets = bolt_sheet(made())
     (sheet,) = sheets.sheets
     share = sheet.row("Phi").result.value

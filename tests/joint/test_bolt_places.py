@@ -135,3 +135,17 @@ def test_an_axis_may_lie_a_fifth_of_its_radius_beside_the_hole(share, refused):
             made.fitted(rings())
     else:
         assert made.fitted(rings()).length == pytest.approx(10e-3)
+
+
+def test_bolts_that_cross_at_an_angle_are_not_in_one_place():
+    """Two screws of one named face that look different ways may pass close by each other; parallel ones may not."""
+    from faying.bolt.bolt import BoltPlace, each_in_its_place
+
+    def place(name, axis):
+        bolt = Bolt(name, ("both walls", f"{name}.nut"), diameter="8 mm", material=STEEL)
+        return BoltPlace(bolt=bolt, point=np.zeros(3), axis=np.array(axis, float), length=0.02, ring=None)
+
+    each_in_its_place([place("a", (0, 0, 1)), place("b", (1, 0, 0))])
+    for axis in ((0, 0, 1), (0, 0, -1)):
+        with pytest.raises(faying.InputError, match="bolts 'a' and 'b' run through one place"):
+            each_in_its_place([place("a", (0, 0, 1)), place("b", axis)])

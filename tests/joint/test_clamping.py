@@ -10,9 +10,10 @@ import faying
 from faying.bolt.bolt import Bolt
 from faying.bolt.vdi2230 import cone_angle, cone_compliance, embedding_guide
 from faying.fe.interface import join
-from faying.joint.clamping import clamping, stack_of
+from faying.joint.clamping import clamping, cone_of
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
+from faying.joint.load_path import LoadPaths, seat_ring
 from faying.joint.structure import Structure
 from faying.numerics.modes import lowest_modes
 from tests.helpers.laws import Given
@@ -174,11 +175,12 @@ def test_wide_discs_against_the_cone_of_the_guideline(wide):
     A bolt of ours presses its ring evenly: softer, here by 18 %.
     """
     structure, stiffness, *_, found = wide
-    stack = stack_of(structure, 0)
-    assert np.array(stack.sections) == pytest.approx(np.array([(12e-3, 210e9), (12e-3, 210e9)]))
-    assert stack.joints == (0,)
-    assert stack.outer == pytest.approx(60e-3, rel=2e-3)
-    cone = stack.cone
+    paths = LoadPaths.of(structure)
+    ((cut,),) = paths.cuts
+    assert (cut.depth, paths.lines[0].length) == pytest.approx((12e-3, 24e-3))
+    assert cut.joints == (0,)
+    assert np.sqrt(4 * cut.area / pi + HOLE**2) == pytest.approx(60e-3, rel=2e-3)
+    cone = cone_of(structure, paths, 0)
     rigid = under_rigid_seats(structure, stiffness, 6.5e-3)
     assert rigid == pytest.approx(cone, rel=0.07)
     assert rigid < found.members[0] < 1.25 * cone
@@ -255,21 +257,19 @@ def test_two_bolts_share_a_joint_by_the_nearer_axis():
         for name, x in (("one", 0.02), ("two", 0.06))
     )
     structure = plates(mesh, bolts=bolts)
-    outer = np.sqrt(4 * 0.04 * 0.04 / pi + 8e-3**2)
-    for index in (0, 1):
-        stack = stack_of(structure, index)
-        assert stack.outer == pytest.approx(outer, rel=1e-6)
-        assert [length for length, _ in stack.sections] == pytest.approx([0.01, 0.01])
+    for (cut,) in LoadPaths.of(structure).cuts:
+        assert cut.area == pytest.approx(0.04 * 0.04, rel=1e-6)
+        assert cut.depth == pytest.approx(0.01)
     (whole,) = (Bolt(name="w", faces=("high.top", "low.bottom")),)
-    assert np.isnan(stack_of(replace(structure, bolts=(whole,)), 0).cone)
+    alone = replace(structure, bolts=(whole,))
+    assert np.isnan(cone_of(alone, LoadPaths.of(alone), 0))
 
 
 def test_a_face_that_is_a_ring_is_a_seat():
     structure, *_ = sleeve()
-    stack = stack_of(structure, 0)
-    assert stack.seat == pytest.approx((HOLE, 20e-3))
+    assert seat_ring(structure.mesh, structure.fitted_bolts[0]) == pytest.approx((HOLE, 20e-3))
     area = pi / 4 * (20e-3**2 - HOLE**2)
-    assert stack.cone == pytest.approx(26e-3 / (210e9 * area), rel=5e-3)
+    assert cone_of(structure, LoadPaths.of(structure), 0) == pytest.approx(26e-3 / (210e9 * area), rel=5e-3)
 
 
 def meshed(**changes):

@@ -256,6 +256,18 @@ def test_displacement_of_a_support(held):
     assert found.bolt_force[:, 0] == pytest.approx(PRELOAD + ways / made.bolt, rel=1e-8)
     assert found.normal_force[:, 0] == pytest.approx(PRELOAD - ways / made.members, rel=1e-8)
     assert found.displacement == pytest.approx(np.abs(ways), rel=1e-8)
+    assert found.bolt_force_linear[:, 0] == pytest.approx(found.bolt_force[:, 0], rel=1e-8)  # no spring changes here
+    assert found.superposition == pytest.approx(0, abs=1e-6)
+
+
+def test_a_rigid_motion_of_all_supports_does_nothing(held):
+    """100 mm along an axis strain nothing: no force of a bolt changes, nothing slides, superposition holds."""
+    load = faying.Load("m", displacements=[faying.Displacement("p0.left", ("100 mm", "40 mm", "-70 mm"))])
+    found = faying.load_cases(held[1], [load], modes=False)
+    assert found.displacement[0] == pytest.approx(np.linalg.norm([0.1, 0.04, 0.07]), rel=1e-9)
+    assert found.bolt_force[0] == pytest.approx(found.bolt_preload, abs=1e-3)
+    assert found.normal_force[0] == pytest.approx(found.normal_preload, abs=1e-3)
+    assert found.superposition[0] == pytest.approx(0, abs=1e-6)
 
 
 def test_two_displacements_of_one_face_are_refused(held):

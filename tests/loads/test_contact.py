@@ -89,3 +89,31 @@ def test_friction_bounds_the_shear_and_what_slid_is_dissipated():
     assert np.all(taken >= 0)
     _, sticks, _ = laid(None, yields=False)[0].advance(laid(None, yields=False)[0].start, far)
     assert sticks[:3, 1] == pytest.approx(k_t[:3] * 5e-6, rel=1e-6)
+
+
+def test_a_point_that_opens_and_closes_elsewhere_starts_without_shear():
+    """The way that it went while it was open is no slip of the joint: it touches where it lands."""
+    contact, rest, _, _, k_t = laid(None, yields=False)
+    shut, apart = contact.start, rest.copy()
+    apart[:3, 0] += 1e-5  # open
+    apart[:3, 1] += 3e-6
+    opened, traction, _ = contact.advance(shut, apart)
+    assert np.all(traction[:3] == 0)
+    landed = rest.copy()
+    landed[:3, 1] += 3e-6
+    _, traction, _ = contact.advance(opened, landed)
+    assert traction[:3, 1:] == pytest.approx(0, abs=1e-9 * float(k_t.max()) * 3e-6)
+    _, never_opened, _ = contact.advance(shut, landed)
+    assert never_opened[:3, 1] == pytest.approx(k_t[:3] * 3e-6, rel=1e-4)
+
+
+def test_a_point_slides_from_friction_times_pressure_on():
+    """Between half of that and all of it some of its sliders have slid, but the point still sticks."""
+    contact, rest, pressure, _, k_t = laid(0.3, yields=False)
+    for share, slides in ((0.7, False), (3.0, True)):
+        moved = rest.copy()
+        moved[:3, 1] += share * 0.3 * pressure[:3] / k_t[:3]
+        _, traction, _ = contact.advance(contact.start, moved)
+        shear = np.linalg.norm(traction[:3, 1:], axis=1) / (0.3 * pressure[:3])
+        assert np.all((shear > 0.5) & (shear < 1 + 1e-6))
+        assert list(contact.sliding(moved, traction)) == [slides] * 3 + [False]

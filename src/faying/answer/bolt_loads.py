@@ -1,18 +1,20 @@
-"""What a sheet takes from load cases: working and transverse load, load factor and loss by temperature of each bolt."""
+"""What a sheet takes from load cases at each of three preloads: loads along and across each bolt, and its forces."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from faying.answer.load_answers import answers, preloaded_case
+from faying.answer.load_answers import answers, at_preload, preloaded_case
 from faying.case.case import Case, Progress
 from faying.case.engine import Engine
 from faying.case.solve import LoadedCase
+from faying.errors import InputError, NotConverged
+from faying.joint.preload_case import PreloadCase
 from faying.loads.load import Load
-from faying.result.bolts import BoltNumbers
 from faying.result.load_cases import LoadCases
 from faying.study.keys.bolt_sheet import choice_of
+from faying.typing import Array
 
 HEAT = "heat of "  # stands before the name of a case of which the temperatures alone act
 COLD = "without heat: "  # the same of what else acts
@@ -28,12 +30,12 @@ class _Parted:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BoltLoad:
-    """What load cases are to one bolt.
+class AtPreload:
+    """What cases do to one bolt at one preload.
 
     Args:
         axial: Least and greatest working load [N].
-        transverse: Greatest load across the bolt [N], on the joint round it and across its shank.
+        transverse: Greatest share of what crosses its joints [N].
         additional: Least and greatest change of the bolt's force [N], without that by temperature.
         taken: Greatest force [N] that the joint loses.
         introduction: n, that makes the load factor the one that was found under the greatest working load [-].
@@ -50,14 +52,33 @@ class BoltLoad:
     thermal_gain: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class BoltLoad:
+    """What load cases are to one bolt at the least preload in service, the mean one, and the greatest at assembly.
+
+    least, greatest: None where there is no such state; missing: what there would have to be for them to be known.
+    """
+
+    least: AtPreload | None
+    mean: AtPreload
+    greatest: AtPreload | None
+    missing: str = ""
+
+
 def bolt_loads(
-    case: Case, state: LoadedCase, engine: Engine, numbers: BoltNumbers, progress: Progress
+    case: Case, state: LoadedCase, engine: Engine, forces: tuple[Array, Array], share: Array, progress: Progress
 ) -> dict[int, BoltLoad]:
     """Return what the cases that [[bolt_sheet]] names are to each bolt, by its index; those without one are left out.
 
     The change of a bolt's force is n Phi_K F_A and what temperature makes of it, with Phi_K of a load at the seats: the
     temperatures of a case are solved for apart. Shear by temperature gives way once it slips, and is none that friction
     has to carry.
+
+    Args:
+        case, state, engine: The study under its mean preload.
+        forces: The least and the greatest of each bolt [N] (b,).
+        share: Phi_K of each bolt [-] (b,).
+        progress: Is told of each preload.
     """
     study = case.study
     wanted = {k: choice_of(study.bolt_sheets, bolt.name).loads for k, bolt in enumerate(study.bolts)}
@@ -67,9 +88,29 @@ def bolt_loads(
     asked = _with_needs(study.load_cases, names)
     base = preloaded_case(case, state.preload, state.springs, engine, modes=False)
     parted = _parted(asked, names)
-    found = answers(base, (*asked, *parted.heat.values(), *parted.rest.values()), progress)
-    shares = numbers.load_factor[0]
-    return {k: _bolt_load(found, k, some, float(shares[k]), parted) for k, some in wanted.items() if some}
+    loads = (*asked, *parted.heat.values(), *parted.rest.values())
+    mean = answers(base, loads, progress)
+    ends: list[LoadCases | None] = []
+    missing = ""
+    for which, wish in zip(("least preload in service", "greatest preload at assembly"), forces, strict=True):
+        ends.append(None)
+        if np.any(wish <= 0):
+            missing = f"a {which} above 0 in every bolt"
+            continue
+        try:
+            ends[-1] = answers(at_preload(base, study, PreloadCase(tuple(wish.tolist()))), loads, progress)
+        except (InputError, NotConverged) as fault:
+            missing = f"an equilibrium at the {which} ({fault})"
+    out = {}
+    for k, some in wanted.items():
+        if some:
+            least, middle, greatest = (
+                None if found is None else _at_preload(found, k, some, float(share[k]), parted)
+                for found in (ends[0], mean, ends[1])
+            )
+            assert middle is not None
+            out[k] = BoltLoad(least=least, mean=middle, greatest=greatest, missing=missing)
+    return out
 
 
 def _parted(asked: Sequence[Load], names: Sequence[str]) -> _Parted:
@@ -92,7 +133,7 @@ def _parted(asked: Sequence[Load], names: Sequence[str]) -> _Parted:
     return out
 
 
-def _bolt_load(found: LoadCases, k: int, names: Sequence[str], share: float, parted: _Parted) -> BoltLoad:
+def _at_preload(found: LoadCases, k: int, names: Sequence[str], share: float, parted: _Parted) -> AtPreload:
     """What cases are to one bolt; share: its load factor Phi_K for a load at the seats."""
     rows = [found.index(name) for name in names]
     change = found.bolt_force[:, k] - found.bolt_preload[k]
@@ -106,21 +147,15 @@ def _bolt_load(found: LoadCases, k: int, names: Sequence[str], share: float, par
     if len(rows) == 1:  # from nothing to it
         working, own = np.append(working, 0.0), np.append(own, 0.0)
     heated = any(name in parted.heat for name in names)
-    return BoltLoad(
+    return AtPreload(
         axial=(float(working.min()), max(float(working.max()), 0.0)),
-        transverse=max(_across(found, found.index(name), k) for name in across),
+        transverse=max(float(found.transverse_load[found.index(name), k]) for name in across),
         additional=(float(own.min()), float(own.max())),
         taken=max(float((working - own).max()), 0.0),
         introduction=float(factor),
         thermal_loss=max(float((-heat).max()), 0.0) + 0.0 if heated else None,
         thermal_gain=max(float(heat.max()), 0.0),
     )
-
-
-def _across(found: LoadCases, row: int, k: int) -> float:
-    """Load across a bolt [N]: what the joint round it bears by friction, and its shank beyond that."""
-    shank = float(found.bolt_shear[row, k])
-    return float(found.transverse_load[row, k]) + (shank if np.isfinite(shank) else 0.0)
 
 
 def _with_needs(loads: Sequence[Load], names: Sequence[str]) -> tuple[Load, ...]:

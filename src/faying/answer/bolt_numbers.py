@@ -12,7 +12,8 @@ from faying.case.case import Case, materials_at
 from faying.case.solve import LoadedCase
 from faying.contact.conductance import contact_conductance
 from faying.errors import InputError
-from faying.joint.clamping import ClampedStack, Clamping, clamping, stack_of
+from faying.joint.clamping import Clamping, clamping, cone_of
+from faying.joint.load_path import Cut, LoadPaths
 from faying.joint.strength import seat_area, seat_limit
 from faying.joint.structure import Structure
 from faying.materials import ContactPair
@@ -37,7 +38,7 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
     bolts = structure.fitted_bolts
     if not bolts:
         return None
-    stacks = [stack_of(structure, index) for index in range(len(bolts))]
+    paths = LoadPaths.of(structure)
     found: list[Clamping] = []
     for state in states:
         found.append(_clamped(structure, state, found[-LIKE:]))
@@ -47,12 +48,12 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
     omega = 2 * np.pi * np.stack([s.damped.frequencies for s in states])
     embedding = np.stack([_embedding(structure, c, s) for c, s in zip(found, states, strict=True)], axis=1)
     height = cache(lambda number: _height(case.surfaces[number]))
-    guide = np.array([_guide(height, stack) for stack in stacks])
+    guide = np.array([_guide(height, cuts) for cuts in paths.cuts])
     return BoltNumbers(
         compliance=bolt,
         member_compliance=members,
         load_factor=np.stack([c.load_factor for c in found]),
-        cone_compliance=np.array([NAN if stack is None else stack.cone for stack in stacks]),
+        cone_compliance=np.array([cone_of(structure, paths, index) for index in range(len(bolts))]),
         modal_force=motion,
         modal_force_by_acceleration=motion / omega[:, :, None] ** 2,
         proof_share=forces / [NAN if b.bolt.fastener is None else b.bolt.fastener.proof_load for b in bolts],
@@ -123,15 +124,16 @@ def _embedding_of(structure: Structure, found: Sequence[Clamping], embedding: Ar
     return np.asarray(np.where(carried > CARRIES, embedding, np.nan_to_num(embedding)).sum(axis=2))
 
 
-def _guide(height: Callable[[int], float], stack: ClampedStack | None) -> float:
+def _guide(height: Callable[[int], float], cuts: Sequence[Cut]) -> float:
     """Embedding [m] of thread, both seats and the joints of a bolt by the guideline; NaN where no scan gives Rz.
 
-    height: Rz [m] of the surface of each joint. The seats are taken to be as rough as the roughest of these joints.
+    height: Rz [m] of the surface of each joint. The seats are taken to be as rough as the roughest of these joints; of
+    joints side by side the roughest counts.
     """
-    if stack is None:
+    if not cuts:
         return NAN
     try:
-        values = [embedding_guide(height(number)) for number in stack.joints]
+        values = [embedding_guide(max(height(number) for number in cut.joints)) for cut in cuts]
     except InputError:
         return NAN
     return values[0][0] + 2 * max(value[1] for value in values) + sum(value[2] for value in values)

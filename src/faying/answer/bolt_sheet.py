@@ -21,7 +21,7 @@ from faying.case.case import Case, Progress
 from faying.case.engine import engine_of
 from faying.case.solve import solve
 from faying.errors import InputError
-from faying.joint.clamping import seat_ring, stack_of
+from faying.joint.load_path import LoadPaths, seat_ring
 from faying.joint.preload_case import preload_index
 from faying.joint.strength import seat_limit
 from faying.misuse import checked_call
@@ -47,11 +47,13 @@ class BoltSheet:
 
     Args:
         bolt: Its name.
+        preload: Its own [N].
         size: Thread and class, "M8x1.25 8.8", as far as they are known.
         rows: Steps R0 to R13.
     """
 
     bolt: str
+    preload: float
     size: str
     rows: tuple[Row, ...]
 
@@ -70,7 +72,12 @@ class BoltSheet:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the sheet in SI units, for JSON."""
-        return {"bolt": self.bolt, "size": self.size, "rows": [row.to_dict() for row in self.rows]}
+        return {
+            "bolt": self.bolt,
+            "preload": {"unit": "N", "values": self.preload},
+            "size": self.size,
+            "rows": [row.to_dict() for row in self.rows],
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,8 +89,8 @@ class BoltSheets:
     sheets: tuple[BoltSheet, ...]
 
     def __repr__(self) -> str:
-        lines = [f"{one.bolt}, {one.size}: {one.verdict}" for one in self.sheets]
-        return "\n".join([f"Bolt sheets of {self.title} at {show(self.load, 'N')}", *lines])
+        lines = [f"{one.bolt}, {one.size}, at {show(one.preload, 'N')}: {one.verdict}" for one in self.sheets]
+        return "\n".join([f"Bolt sheets of {self.title}", *lines])
 
     def to_dict(self) -> dict[str, Any]:
         """Return all sheets in SI units, for JSON."""
@@ -125,7 +132,8 @@ def bolt_sheet(
     if numbers is None:
         raise InputError("the study has no bolt, so that there is no sheet; add [[bolt]]")
     forces = np.array(state.preload.bolt_forces)
-    found = bolt_loads(case, state, engine, numbers, progress)
+    least, greatest = np.array([_ends(plan, k, numbers, float(force)) for k, force in enumerate(forces)]).T
+    found = bolt_loads(case, state, engine, (least, greatest), numbers.load_factor[0], progress)
     sheets = [_sheet(case, index, numbers, float(forces[index]), found.get(index)) for index in range(len(forces))]
     return BoltSheets(title=plan.title, load=state.load, sheets=tuple(sheets))
 
@@ -135,25 +143,36 @@ def choice_for(study: Study, bolt: str) -> BoltSheetChoice:
     return choice_of(study.bolt_sheets, bolt)
 
 
+def _ends(study: Study, index: int, numbers: BoltNumbers, force: float) -> tuple[float, float]:
+    """Least preload in service, before any temperature, and greatest at assembly [N]."""
+    bolt = study.bolts[index].name
+    choice = choice_for(study, bolt)
+    scatter, _ = preload_scatter(study, bolt, choice)
+    embedding, _ = _embedding(numbers, index, choice)
+    lost = embedding / float(numbers.compliance[0, index] + numbers.member_compliance[0, index])
+    return force * (1 - scatter) - (lost if isfinite(lost) else 0.0), force * (1 + scatter)
+
+
 def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: BoltLoad | None) -> BoltSheet:
     fitted = case.structure.fitted_bolts[index]
     bolt, choice = fitted.bolt, choice_for(case.study, fitted.bolt.name)
     if found is not None:
+        low = found.least or found.mean
         choice = replace(
             choice,
-            axial=found.axial,
-            transverse=found.transverse,
-            introduction=found.introduction,
-            thermal_loss=found.thermal_loss,
+            axial=low.axial,
+            transverse=low.transverse,
+            introduction=found.mean.introduction,
+            thermal_loss=low.thermal_loss,
         )
     known = {
         one.symbol: one
         for one in (
             *_thread(bolt),
             *_tightening(case.study, bolt, choice, force),
-            *_loads(case, index, choice, 0.0 if found is None else found.thermal_gain),
+            *_loads(case, index, choice, 0.0 if found is None else (found.greatest or found.mean).thermal_gain),
             *_compliances(numbers, index, choice),
-            *_beyond(numbers, index, choice, found),
+            *_departures(float(numbers.load_factor[0, index]), choice, found),
             *_seats(case, index, numbers, force, choice),
         )
     }
@@ -161,26 +180,36 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
     size = "thread not known" if metric is None else f"{metric} {fastener.grade if fastener else '(no grade)'}"
     tapped = isinstance(fitted, FittedBolt) and fitted.thread is not None
     rows = evaluate(steps(tapped=tapped, rolled_after=choice.rolled == "after"), known)
-    return BoltSheet(bolt=bolt.name, size=size, rows=rows)
+    return BoltSheet(bolt=bolt.name, preload=force, size=size, rows=rows)
 
 
-def _beyond(numbers: BoltNumbers, index: int, choice: BoltSheetChoice, found: BoltLoad | None) -> list[Quantity]:
-    """What load cases change of the forces of bolt and joint beyond the load factor times the working load."""
-    more = (0.0, 0.0, 0.0)
-    if found is not None:
-        share = choice.introduction * float(numbers.load_factor[0, index])
-        (low, high), (least, most) = found.axial, found.additional
-        more = (least - share * low, most - share * high, found.taken - (1 - share) * high)
-    names = ("least bolt force", "greatest bolt force", "force that the joint loses")
+def _departures(factor: float, choice: BoltSheetChoice, found: BoltLoad | None) -> list[Quantity]:
+    """What load cases, each at its own preload, change of the forces beyond the load factor times the working load.
+
+    factor: Phi_K, of a load at the seats.
+    """
+    low, high = choice.axial or (0.0, 0.0)
+    share = choice.introduction * factor
+    typed = found is None
+    values: dict[str, float | None] = dict.fromkeys(("dF_u", "dF_o", "dF_P", "dF_M"), 0.0 if typed else None)
+    if found is not None and found.least is not None:
+        (least, most), taken = found.least.additional, found.least.taken
+        values |= {"dF_u": least - share * low, "dF_o": most - share * high, "dF_P": taken - (1 - share) * high}
+    if found is not None and found.greatest is not None:
+        values["dF_M"] = found.greatest.additional[1] - share * high
+    names = {
+        "dF_u": "least bolt force at the least preload",
+        "dF_o": "greatest bolt force at the least preload",
+        "dF_P": "force that the joint loses at the least preload",
+        "dF_M": "greatest bolt force at the greatest preload",
+    }
     under = (
-        ", as found, that the load factor does not give"
-        if found is not None
-        else " that the load factor does not give (no load case: none)"
+        " that the load factor does not give (no load case: none)"
+        if typed
+        else ", as found, that the load factor does not give"
     )
-    return [
-        _quantity(symbol, name + under, "N", value, "bolt.diameter and bolt.material")
-        for symbol, name, value in zip(("dF_u", "dF_o", "dF_P"), names, more, strict=True)
-    ]
+    missing = (found and found.missing) or "bolt.diameter and bolt.material"
+    return [_quantity(symbol, names[symbol] + under, "N", values[symbol], missing) for symbol in values]
 
 
 def _quantity(symbol: str, name: str, unit: str, value: float | None, missing: str) -> Quantity:
@@ -256,11 +285,10 @@ def _tightening(study: Study, bolt: Bolt | SolidBolt, choice: BoltSheetChoice, f
 
 
 def _loads(case: Case, index: int, choice: BoltSheetChoice, gain: float) -> list[Quantity]:
-    stack = stack_of(case.structure, index)
-    joints = case.structure.joints if stack is None else [case.structure.joints[k] for k in stack.joints]
-    frictions = [joint.friction for joint in joints]
+    cuts = LoadPaths.of(case.structure).cuts[index]
+    frictions = [case.structure.joints[k].friction for cut in cuts for k in cut.joints]
     friction = choice.slip_friction
-    if friction is None and None not in frictions:
+    if friction is None and frictions and None not in frictions:
         friction = min((f for f in frictions if f), default=None)
     low, high = choice.axial or (None, None)
     stated = choice.transverse is not None or choice.clamp is not None
@@ -292,13 +320,22 @@ def _loads(case: Case, index: int, choice: BoltSheetChoice, gain: float) -> list
     ]
 
 
+def _embedding(numbers: BoltNumbers, index: int, choice: BoltSheetChoice) -> tuple[float, str]:
+    """Embedding [m] that the sheet counts with, and where it is from."""
+    if choice.embedding is not None:
+        return choice.embedding, "as given"
+    guide = float(numbers.embedding_guide[index])
+    if isfinite(guide):
+        return guide, "guide value"
+    compliance = float(numbers.compliance[0, index] + numbers.member_compliance[0, index])
+    return float(numbers.embedding_loss[1, 0, index]) * compliance, "by the contact law"
+
+
 def _compliances(numbers: BoltNumbers, index: int, choice: BoltSheetChoice) -> list[Quantity]:
     own, members = float(numbers.compliance[0, index]), float(numbers.member_compliance[0, index])
     guide = float(numbers.embedding_guide[index])
     law = float(numbers.embedding_loss[1, 0, index]) * (own + members)
-    counted, whose = (guide, "guide value") if isfinite(guide) else (law, "by the contact law")
-    if choice.embedding is not None:
-        counted, whose = choice.embedding, "as given"
+    counted, whose = _embedding(numbers, index, choice)
     scan, loading = "a scan of each joint", "a law with a loading curve of its own"
     return [
         _quantity("delta_S", "compliance of the bolt", "m/N", own, "bolt.diameter and bolt.material"),

@@ -12,13 +12,15 @@ from faying.case.provenance import provenance
 from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
+from faying.joint.load_path import LoadPaths
 from faying.joint.modal import ModalProblem, ModesChoice
+from faying.joint.preload_case import PreloadCase
 from faying.joint.shared_modes import SharedModes
 from faying.joint.springs import Springs
 from faying.joint.state import State
-from faying.joint.support_check import check_motions
+from faying.joint.support_check import check_motions, checked_preload
 from faying.loads.acting import Acting, acting, nothing
-from faying.loads.answers import NOTHING, BoltAnswers, Regions, bolt_answers, joint_answers
+from faying.loads.answers import NOTHING, BoltAnswers, bolt_answers, joint_answers
 from faying.loads.contact import LoadedContact
 from faying.loads.load import Load, in_order
 from faying.loads.remarks import load_notes
@@ -35,6 +37,7 @@ from faying.study.study import Study
 from faying.typing import Array
 
 NOT_FROM_FILES = Provenance(study="", files={}, versions={}, date="")
+ROUNDING = 1e-9  # of the displacement under the preload
 STAGES = 5  # that are reported, beside the modes of each case
 
 
@@ -108,6 +111,18 @@ def preloaded_case(
         provenance=provenance(study),
         head_friction=np.array([np.nan if one is None else one for one in friction]),
     )
+
+
+def at_preload(
+    base: Preloaded, study: Study, wanted: PreloadCase, structure: BoltedStructure | None = None
+) -> Preloaded:
+    """The same under another preload; structure: with other friction, say."""
+    made = base.structure if structure is None else structure
+    problem = made.assembly(solver=study.modes.solver)
+    problem.adopt_factor(base.factor, 0.0)
+    preload = checked_preload(made, problem, wanted)
+    springs = made.springs(preload.pressures)
+    return replace(base, structure=made, preload=preload, springs=springs, rest=None, notes=())
 
 
 def of_state(state: State, modes: bool) -> Preloaded:
@@ -200,13 +215,13 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
     motions = [statics.motion(state) for state in states]
     straight = [linear[load.name] for load in loads]
     dissipated = [np.sum([one.dissipated for one in found[load.name]], axis=0) for load in loads]
-    regions = Regions.of(structure)
+    paths = LoadPaths.of(structure)
     forces = np.array(base.preload.bolt_forces)
-    bolts = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), regions)
+    bolts = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), paths)
     if base.head_friction is not None:
         known = np.where(np.isnan(base.head_friction), bolts.head_friction, base.head_friction)
         bolts = replace(bolts, head_friction=known)
-    joints = joint_answers(structure, contacts, states, dissipated, regions)
+    joints = joint_answers(structure, contacts, states, dissipated, paths)
     pressures = [[-traction[:, 0] for traction in state.tractions] for state in states]
     interfaces = [joint.interface for joint in structure.joints]
     shears = [np.concatenate([np.linalg.norm(one[:, 1:], axis=1) for one in state.tractions]) for state in states]
@@ -218,7 +233,7 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         after=tuple(load.after or "" for load in loads),
         bolts=tuple(bolt.name for bolt in structure.bolts),
         joints=tuple(joint.name for joint in structure.joints),
-        superposition=_departure(motions, straight, bolts, forces),
+        superposition=_departure(motions, straight, bolts, forces, base.preload.displacement),
         displacement=np.array([_greatest(one) for one in motions]),
         error=np.array([state.error for state in states]),
         bolt_preload=forces,
@@ -239,17 +254,22 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
     )
 
 
-def _departure(motions: Sequence[Array], straight: Sequence[Array], bolts: BoltAnswers, preload: Array) -> Array:
+def _departure(
+    motions: Sequence[Array], straight: Sequence[Array], bolts: BoltAnswers, preload: Array, rest: Array
+) -> Array:
     """How far the answers are from the linear ones, over these: of displacement or bolt forces, the greater (case,).
 
     A change of force counts as NOTHING times the preload at least: where a load changes none, rounding is all there is.
+    So it is with a displacement of ROUNDING of that under the preload. Where a load that is taken off leaves slip, the
+    linear answer is none, and the departure is all of the answer: 1.
     """
-    out, floor = [], NOTHING * float(preload.max(initial=0.0))
+    out, floor, round_off = [], NOTHING * float(preload.max(initial=0.0)), ROUNDING * _greatest(rest)
     for moved, line, here, there in zip(motions, straight, bolts.bolt_force, bolts.bolt_force_linear, strict=True):
-        size, force = _greatest(line), max(float(np.abs(there - preload).max(initial=0.0)), floor)
-        apart = _greatest(moved - line) / size if size > 0 else float(_greatest(moved) > 0)
+        size, way = _greatest(line), _greatest(moved)
+        force = max(float(np.abs(there - preload).max(initial=0.0)), floor)
+        apart = _greatest(moved - line) / size if size > NOTHING * way else 1.0
         by_force = float(np.abs(here - there).max(initial=0.0)) / force if force > 0 else 0.0
-        out.append(max(apart, by_force))
+        out.append(max(apart if max(size, way) > round_off else 0.0, by_force))
     return np.array(out)
 
 

@@ -12,10 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from faying.answer.bolt_sheet import preload_scatter
-from faying.answer.load_answers import Preloaded, answers
+from faying.answer.load_answers import Preloaded, answers, at_preload
 from faying.case.case import Progress
 from faying.distribution import Distribution
-from faying.joint.support_check import checked_preload
 from faying.loads.load import Load
 from faying.notes import Note
 from faying.result.load_cases import LoadCases, LoadIntervals
@@ -133,10 +132,6 @@ def _moved(
         else:
             assert one.joint is not None
             friction[one.joint] = (friction[one.joint] or 0.0) * factor
-    structure = base.structure.with_joints(friction=friction)
-    problem = structure.assembly(solver=study.modes.solver)
-    problem.adopt_factor(base.factor, 0.0)
-    preload = checked_preload(structure, problem, replace(study.preloads[number], forces=tuple(forces.tolist())))
-    springs = structure.springs(preload.pressures)
-    moved = replace(base, structure=structure, preload=preload, springs=springs, rest=None, notes=())
+    wanted = replace(study.preloads[number], forces=tuple(forces.tolist()))
+    moved = at_preload(base, study, wanted, base.structure.with_joints(friction=friction))
     return _answers(answers(moved, loads, Progress(0)))

@@ -450,6 +450,11 @@ class BoltPlace:
     inside: float = 0.0
 
     @property
+    def seats(self) -> Array:
+        """Points (2, 3) [m] where the axis meets the seats of head and nut."""
+        return np.stack([self.point, self.point + self.length * self.axis])
+
+    @property
     def free(self) -> float:
         """Length [m] from under the head to where the thread engages, washers included."""
         return self.length - self.inside + sum(washer.thickness for washer in self.bolt.washers)
@@ -521,11 +526,6 @@ class FittedBolt(BoltPlace):
         from scipy.sparse import block_diag, csr_array, vstack
 
         return csr_array(block_diag([csr_array(frame_about(self.axis))] * 4) @ vstack(self.ends))
-
-    @property
-    def seats(self) -> Array:
-        """Points (2, 3) [m] where the axis meets the seats of head and nut."""
-        return np.stack([self.point, self.point + self.length * self.axis])
 
     @cached_property
     def load(self) -> Array:

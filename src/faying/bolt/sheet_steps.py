@@ -119,16 +119,23 @@ def _shares() -> tuple[Step, ...]:
         _step(
             "R3",
             "F_SAu [N]",
-            "least additional bolt force",
+            "least additional bolt force, at the least preload",
             "load factor times the least working load + what a load case adds",
             lambda Phi, F_Au, dF_u: Phi * F_Au + dF_u,
         ),
         _step(
             "R3",
             "F_SAo [N]",
-            "greatest additional bolt force",
+            "greatest additional bolt force, at the least preload",
             "load factor times the greatest working load + what a load case adds",
             lambda Phi, F_Ao, dF_o: Phi * F_Ao + dF_o,
+        ),
+        _step(
+            "R3",
+            "F_SAM [N]",
+            "greatest additional bolt force, at the greatest preload",
+            "load factor times the greatest working load + what a load case adds",
+            lambda Phi, F_Ao, dF_M: Phi * F_Ao + dF_M,
         ),
     )
 
@@ -217,8 +224,8 @@ def _stresses() -> tuple[Step, ...]:
             "R8",
             "F_Smax [N]",
             "greatest bolt force",
-            "greatest assembly preload + greatest additional bolt force + gain by temperature",
-            lambda F_Mmax, F_SAo, F_thg: F_Mmax + F_SAo + F_thg,
+            "greatest assembly preload + greatest additional bolt force there + gain by temperature",
+            lambda F_Mmax, F_SAM, F_thg: F_Mmax + F_SAM + F_thg,
         ),
         _step(
             "R8",
@@ -244,8 +251,8 @@ def _fatigue(rolled_after: bool) -> tuple[Step, ...]:
             "R9",
             "F_Sm [N]",
             "mean bolt force",
-            "greatest assembly preload + mean of the least and the greatest additional bolt force",
-            lambda F_Mmax, F_SAu, F_SAo: F_Mmax + (F_SAu + F_SAo) / 2,
+            "greatest assembly preload + greatest additional bolt force there - half of the range at the least preload",
+            lambda F_Mmax, F_SAM, F_SAu, F_SAo: F_Mmax + F_SAM - (F_SAo - F_SAu) / 2,
         ),
         _step(
             "R9",
@@ -326,8 +333,8 @@ def _slip() -> tuple[Step, ...]:
             "R12",
             "F_PA [N]",
             "what the working load takes from the joint",
-            "(1 - load factor) times the greatest working load + what a load case adds; the joint opens where it "
-            "exceeds the preload",
+            "(1 - load factor) times the greatest working load + what a load case adds at the least preload; the joint "
+            "opens where it exceeds the preload",
             lambda Phi, F_Ao, dF_P: (1 - Phi) * F_Ao + dF_P,
             limit="F_Vmin",
         ),

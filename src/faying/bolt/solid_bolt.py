@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.bolt.threads import Fastener
 from faying.errors import InputError
-from faying.fe.faces import face_centre
+from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.mesh import Mesh
 from faying.misuse import checked_call
 from faying.typing import Array, Index
@@ -152,6 +152,32 @@ class FittedSolidBolt:
     def tension(self, displacement: Array) -> float:
         """What the stretch of the tight bolt adds to its force [N] under a displacement (unknowns,)."""
         return float(self.pull @ displacement)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolidPlace:
+    """A meshed bolt before there is a mesh: point [m] and axis (3,) from head to nut, length [m] between its faces."""
+
+    bolt: SolidBolt
+    point: Array
+    axis: Array
+    length: float
+
+    @classmethod
+    def of(cls, bolt: SolidBolt, faces: NamedFaces) -> "SolidPlace":
+        """Place a bolt between its two faces. Raises InputError where they are not apart."""
+        (start, _, _), (end, _, _) = (face_centre(faces.points, faces.face(name)) for name in bolt.faces)
+        length = float(np.linalg.norm(end - start))
+        if length < 1e-6 * faces.size:
+            raise InputError(
+                f"bolt {bolt.name!r}: its faces have one centre; name the faces under its head and its nut"
+            )
+        return cls(bolt=bolt, point=start, axis=(end - start) / length, length=length)
+
+    @property
+    def seats(self) -> Array:
+        """Centres (2, 3) [m] of the faces under head and nut."""
+        return np.stack([self.point, self.point + self.length * self.axis])
 
 
 def _across(mesh: Mesh, part: str, above: Index) -> Index:

@@ -132,6 +132,16 @@ def assemble(mesh: SolidMesh, materials: Mapping[str, Solid], *, mass: str = "ex
     return with_transpose(K), _threefold(with_transpose(M))
 
 
+def strain_energy(mesh: SolidMesh, part: str, solid: Solid, motion: Array) -> float:
+    """Twice the strain energy [J] of a part under a displacement [m] (unknowns,)."""
+    moves, total = motion.reshape(-1, 3), 0.0
+    for name, cells in _chunks(mesh):
+        if name == part:
+            stiffness = element_stiffness(mesh.points, cells, solid.E, solid.nu)
+            total += float(np.einsum("eai,eaibj,ebj->", moves[cells], stiffness, moves[cells]))
+    return total
+
+
 def add_rows(total: Array, slot: Index, values: Array) -> None:
     """Add rows of values (p, k) to the rows `slot` of total (m, k), where a slot may occur many times."""
     width = total.shape[1]

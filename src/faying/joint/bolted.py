@@ -342,6 +342,10 @@ class BoltedStructure(Summary):
         """
         return tuple(joint.springs(pressure) for joint, pressure in zip(self.joints, pressures, strict=True))
 
+    def tie_of(self, faces: tuple[str, str]) -> Any:
+        """Stiffness [N/m] that ties two faces which meet; see `tie_stiffness`."""
+        return self._assembled.tie(faces)
+
     def bonded(self) -> Any | None:
         """Return the map that bonds the faces of every joint; see `bond`."""
         return bond(self.mesh, [joint.faces for joint in self.joints], [joint.interface.area for joint in self.joints])

@@ -7,18 +7,19 @@ gives along them. Taking away k f f' leaves the members, whose compliance under 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from faying.bolt.bolt import BoltPlace, FittedBolt
+from faying.bolt.bolt import FittedBolt
 from faying.bolt.solid_bolt import FittedSolidBolt
 from faying.bolt.vdi2230 import cone_compliance
 from faying.errors import NotConverged
-from faying.fe.faces import NamedFaces, face_centre
+from faying.fe.elasticity import strain_energy
 from faying.fe.interface import Interface
-from faying.fe.sides import nodes_of
 from faying.joint.bolted import BoltedStructure
+from faying.joint.load_path import LoadPaths, seat_ring
 from faying.joint.springs import Springs
 from faying.numerics.modes import Modes
 from faying.numerics.product import product
@@ -28,8 +29,7 @@ from faying.typing import Array
 ACCURACY = 1e-4  # of the residual of a solution: a compliance is right to its square, what lies in a joint to it
 MESHED = 1e-6  # the same where a bolt is meshed, whose numbers are all of first order
 MAX_STEPS = 2000
-ROUND = 0.03  # of the area of a ring between its least and greatest radius: a face that differs by more is none
-SEAT_REACH = 1.5  # outer diameters of the seat within which a joint belongs to a bolt
+NAN = float("nan")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +95,7 @@ def clamping(
             members[index] = loaded / left
             own[index] = 1 / fitted.rigidity if fitted.rigidity else np.nan
         else:
-            members[index] = _work(structure, springs, fitted, motion)
+            members[index] = _member_energy(structure, stiffness, springs, fitted.bolt.part, motion)
             own[index] = 1 / (fitted.rigidity * left) - members[index]
     return Clamping(bolt=own, members=members, traction=tuple(traction), motions=motions)
 
@@ -123,112 +123,43 @@ def _solved(
     return np.concatenate(alone, axis=1)
 
 
-def _work(
-    structure: BoltedStructure, springs: Sequence[Springs[Interface]], fitted: FittedSolidBolt, motion: Array
+def _member_energy(
+    structure: BoltedStructure, stiffness: Any, springs: Sequence[Springs[Interface]], part: str, motion: Array
 ) -> float:
-    """Work [m/N] that the contacts of a meshed bolt do on what it clamps, for 1 N of tension."""
-    total = 0.0
+    """Work [m/N] on what a meshed bolt clamps, for 1 N of tension: twice the energy of all but the bolt and its seats.
+
+    By Clapeyron's theorem this is the work that the seats do on the members, be they in contact, bonded or tied.
+    """
+    mesh = structure.mesh
+    total = float(motion @ product(stiffness, motion))
+    total -= strain_energy(mesh, part, structure.materials[part], motion)
     for joint, s in zip(structure.joints, springs, strict=True):
-        parts = [structure.mesh.face_part[face] for face in joint.faces]
-        if fitted.bolt.part not in parts:
-            continue
-        i = s.interface
-        relative = np.asarray(i.relative @ motion).reshape(-1, 3)
-        first = parts[1] == fitted.bolt.part  # the other face is the first one
-        nodes, values = (i.first_nodes, i.first_values) if first else (i.second_nodes, i.second_values)
-        moved = np.einsum("qa,qai->qi", values, motion.reshape(-1, 3)[nodes])
-        local = np.einsum("qij,qj->qi", i.frames, moved)
-        force = i.weights[:, None] * np.stack([s.k_n, s.k_t, s.k_t], axis=1) * relative
-        total += float(np.sum(force * local)) * (1 if first else -1)
+        if part in [mesh.face_part[face] for face in joint.faces]:
+            relative = np.asarray(s.interface.relative @ motion).reshape(-1, 3)
+            total -= float(s.interface.weights @ (s.k_n * relative[:, 0] ** 2 + s.k_t * (relative[:, 1:] ** 2).sum(1)))
+    for faces in mesh.ties:
+        if part in [mesh.face_part[face] for face in faces]:
+            total -= float(motion @ (structure.tie_of(faces) @ motion))
     return total
 
 
-@dataclass(frozen=True, kw_only=True)
-class ClampedStack:
-    """What lies between the seats of a bolt that is a beam, along its axis.
+def cone_of(structure: BoltedStructure, paths: LoadPaths, index: int) -> float:
+    """Return the compliance [m/N] of what a bolt clamps by the deformation cone of VDI 2230.
 
-    Args:
-        sections: (length [m], Young's modulus [Pa]) of the parts, from the head on.
-        joints: indices of the joints that the bolt clamps, from the head on.
-        outer: diameter [m] of a ring of the area of the joint that belongs to this bolt, the mean of its joints.
-        seat: inner and outer diameter [m] of the seat; None where head and nut press a face that is not a ring.
+    The parts are as wide as a ring of the area of the joint that is the bolt's own, the mean of its joints. NaN for a
+    meshed bolt, where its seat is no ring, and where its joints make no chain of parts from seat to seat.
     """
-
-    sections: tuple[tuple[float, float], ...]
-    joints: tuple[int, ...]
-    outer: float
-    seat: tuple[float, float] | None
-
-    @property
-    def cone(self) -> float:
-        """Compliance of the members [m/N] by the deformation cone of VDI 2230; NaN where the seat is not a ring."""
-        if self.seat is None or self.outer <= self.seat[0]:
-            return float("nan")
-        return cone_compliance(self.sections, seat=self.seat[1], hole=self.seat[0], outer=self.outer)
-
-
-def stack_of(structure: BoltedStructure, index: int) -> ClampedStack | None:
-    """Return the stack of a bolt; None for a meshed bolt, and where the joints along its axis make no chain of parts.
-
-    The area of a joint belongs to the bolt whose axis is nearest.
-    """
-    bolts = structure.fitted_bolts
-    fitted = bolts[index]
-    if not isinstance(fitted, FittedBolt):
-        return None
-    mesh = structure.mesh
-    beams = [bolt for bolt in bolts if isinstance(bolt, FittedBolt)]
-    seat = seat_ring(mesh, fitted)
-    found: list[tuple[float, int, float]] = []
-    for number, joint in enumerate(structure.joints):
-        i = joint.interface
-        distance = np.stack([_beside(bolt, i.positions) for bolt in beams])
-        mine = np.argmin(distance, axis=0) == beams.index(fitted)
-        reach = np.inf if seat is None else SEAT_REACH * seat[1]
-        depth = (i.positions - fitted.point) @ fitted.axis
-        near = mine & (distance[beams.index(fitted)] <= reach)
-        near &= (depth > 0) & (depth < fitted.length)
-        if np.any(near):
-            area = float(i.weights[mine].sum())
-            found.append((float(i.weights[near] @ depth[near] / i.weights[near].sum()), number, area))
-    found.sort()
-    part = mesh.face_part[fitted.bolt.faces[0]]
-    sections: list[tuple[float, float]] = []
-    start = 0.0
-    for place, number, _ in found:
-        sides = [mesh.face_part[face] for face in structure.joints[number].faces]
-        if part not in sides:
-            return None
-        sections.append((place - start, structure.materials[part].E))
-        start, part = place, sides[1 - sides.index(part)]
-    if part != mesh.face_part[fitted.bolt.faces[1]]:
-        return None
-    sections.append((fitted.length - start, structure.materials[part].E))
-    hole = 0.0 if seat is None else seat[0]
-    outer = [float(np.sqrt(4 * area / np.pi + hole**2)) for *_, area in found]
-    if not outer or min(length for length, _ in sections) <= 0:
-        return None
-    return ClampedStack(
-        sections=tuple(sections),
-        joints=tuple(number for _, number, _ in found),
-        outer=float(np.mean(outer)),
-        seat=seat,
-    )
-
-
-def seat_ring(mesh: NamedFaces, fitted: FittedBolt | BoltPlace) -> tuple[float, float] | None:
-    """Inner and outer diameter [m] of the seat: as given, or those of the face under the head where it is a ring."""
-    if fitted.ring is not None:
-        return fitted.ring
-    face = fitted.bolt.faces[0]
-    radius = _beside(fitted, mesh.points[nodes_of(mesh.face(face))])
-    inner, outer = float(radius.min()), float(radius.max())
-    inner = inner if inner > 0.05 * outer else 0.0
-    area = face_centre(mesh.points, mesh.face(face))[2]
-    return (2 * inner, 2 * outer) if abs(np.pi * (outer**2 - inner**2) / area - 1) < ROUND else None
-
-
-def _beside(fitted: FittedBolt | BoltPlace, positions: Array) -> Array:
-    """Distance [m] of places (q, 3) from the axis of a bolt."""
-    arm = positions - fitted.point
-    return np.asarray(np.linalg.norm(arm - (arm @ fitted.axis)[:, None] * fitted.axis, axis=1))
+    fitted, mesh, cuts = structure.fitted_bolts[index], structure.mesh, paths.cuts[index]
+    seat = seat_ring(mesh, fitted) if isinstance(fitted, FittedBolt) else None
+    if seat is None or not cuts:
+        return NAN
+    ends = [mesh.face_part[face] for face in fitted.bolt.faces]
+    names = [*(cut.parts[0] for cut in cuts), cuts[-1].parts[1]]
+    if [names[0], names[-1]] != ends or any(one.parts[1] != two.parts[0] for one, two in pairwise(cuts)):
+        return NAN
+    depths = [0.0, *(cut.depth for cut in cuts), paths.lines[index].length]
+    lengths, moduli = np.diff(depths).tolist(), [structure.materials[part].E for part in names]
+    outer = float(np.mean([np.sqrt(4 * cut.area / np.pi + seat[0] ** 2) for cut in cuts]))
+    if outer <= seat[0] or min(lengths) <= 0:
+        return NAN
+    return cone_compliance(list(zip(lengths, moduli, strict=True)), seat=seat[1], hole=seat[0], outer=outer)

@@ -1,15 +1,13 @@
 """Notes where forces and pressures leave what the parts bear: bolts, seats and joints, and odd units."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import pi
 from typing import Protocol
 
 import numpy as np
 
 from faying.bolt.bolt import Bolt, BoltPlace, FittedBolt
-from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
-from faying.errors import InputError
+from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt, SolidPlace
 from faying.fe.elasticity import Solid
 from faying.fe.faces import NamedFaces, face_centre
 from faying.joint.bolted import BoltedStructure
@@ -20,27 +18,6 @@ from faying.units import load_text, show
 GRAVITY = 9.81  # m/s2
 FASTEST = 20e3  # m/s; the speed sqrt(E/density) of diamond, the fastest of all solids, is 18 km/s
 USED = 0.9  # share of its proof load that a bolt is usually tightened to at most
-
-
-@dataclass(frozen=True, kw_only=True)
-class SolidPlace:
-    """A meshed bolt before there is a mesh: point [m] and axis (3,) from head to nut, length [m] between its faces."""
-
-    bolt: SolidBolt
-    point: Array
-    axis: Array
-    length: float
-
-    @classmethod
-    def of(cls, bolt: SolidBolt, faces: NamedFaces) -> "SolidPlace":
-        """Place a bolt between its two faces. Raises InputError where they are not apart."""
-        (start, _, _), (end, _, _) = (face_centre(faces.points, faces.face(name)) for name in bolt.faces)
-        length = float(np.linalg.norm(end - start))
-        if length < 1e-6 * faces.size:
-            raise InputError(
-                f"bolt {bolt.name!r}: its faces have one centre; name the faces under its head and its nut"
-            )
-        return cls(bolt=bolt, point=start, axis=(end - start) / length, length=length)
 
 
 class Bolted(Protocol):

@@ -8,6 +8,7 @@ import numpy as np
 from faying.bolt.bolt import FittedBolt
 from faying.errors import InputError
 from faying.fe.attach import mean_motion
+from faying.fe.elasticity import rigid_motions
 from faying.fe.faces import face_centre
 from faying.fe.nodal_forces import pressure_forces, thermal_forces
 from faying.joint.attachments import nearest_node
@@ -26,7 +27,7 @@ class Acting:
 
     Args:
         force: Nodal forces [N] (unknowns,), those of heated parts and bolts included.
-        moved: Displacements [m] (unknowns,) of what supports hold; 0 elsewhere.
+        moved: Displacements [m] (unknowns,) that supports prescribe; elsewhere a rigid motion that is near to them.
         longer: Free lengthening [m] (bolts,) of bolts that are beams, by heat.
         strains: Part -> free expansion [-] by heat; stresses are those of the strain less this.
     """
@@ -96,7 +97,21 @@ def _own(structure: BoltedStructure, load: Load) -> Acting:
     moved = np.zeros((len(mesh.points), 3))
     for displacement in load.displacements:
         _move(structure, displacement, moved, what)
-    return Acting(force=force + heat, moved=moved.ravel(), longer=longer, strains=strains)
+    return Acting(force=force + heat, moved=_with_all_moved(structure, moved.ravel()), longer=longer, strains=strains)
+
+
+def _with_all_moved(structure: BoltedStructure, moved: Array) -> Array:
+    """What supports prescribe [m] (unknowns,), with the rest moved along rigidly as is nearest to it.
+
+    The answer does not depend on how the rest is moved, but rounding does: a rigid motion of all costs no energy.
+    """
+    fixed = structure.fixed
+    if not np.any(moved):
+        return moved
+    rigid = rigid_motions(structure.mesh.points)
+    along = rigid @ np.linalg.lstsq(rigid[fixed], moved[fixed], rcond=None)[0]
+    along[fixed] = moved[fixed]
+    return np.asarray(along)
 
 
 def _force(structure: BoltedStructure, one: Force, what: str) -> Array:

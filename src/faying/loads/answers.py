@@ -7,63 +7,16 @@ from typing import Any
 import numpy as np
 
 from faying.bolt.bolt import Bolt, FittedBolt
-from faying.bolt.solid_bolt import FittedSolidBolt
-from faying.fe.nodal_forces import thermal_forces
 from faying.joint.bolted import BoltedStructure
-from faying.joint.clamping import stack_of
+from faying.joint.load_path import LoadPaths
 from faying.joint.strength import seat_area
 from faying.loads.contact import LoadedContact
+from faying.loads.crossing import bent, own_heat, transverse_loads
 from faying.loads.statics import LoadedState
-from faying.numerics.product import product
 from faying.typing import Array, Index, Mask
 
 NAN = float("nan")
 NOTHING = 1e-3  # of a bolt's preload: of a smaller working load no share is told, for bending changes the force, too
-
-
-@dataclass(frozen=True, kw_only=True)
-class Regions:
-    """Which points of the joints belong to which bolt: those whose axis is nearest.
-
-    Args:
-        bolt: Of each joint (q,): index of the bolt.
-        joints: Of each bolt: the joints that it clamps.
-    """
-
-    bolt: tuple[Index, ...]
-    joints: tuple[tuple[int, ...], ...]
-
-    @classmethod
-    def of(cls, structure: BoltedStructure) -> "Regions":
-        """Return the regions of a structure."""
-        bolts = structure.fitted_bolts
-        nearest = []
-        for joint in structure.joints:
-            distance = np.stack([_from_axis(bolt.seats, joint.interface.positions) for bolt in bolts])
-            nearest.append(np.argmin(distance, axis=0))
-        clamped = []
-        for index, fitted in enumerate(bolts):
-            stack = stack_of(structure, index)
-            if stack is not None:
-                clamped.append(stack.joints)
-                continue
-            own = fitted.bolt.part if isinstance(fitted, FittedSolidBolt) else None
-            clamped.append(
-                tuple(
-                    number
-                    for number, joint in enumerate(structure.joints)
-                    if np.any(nearest[number] == index)
-                    and own not in [structure.mesh.face_part[face] for face in joint.faces]
-                )
-            )
-        return cls(bolt=tuple(nearest), joints=tuple(clamped))
-
-
-def _from_axis(seats: Array, positions: Array) -> Array:
-    """Distance [m] of places (q, 3) from the axis through two seats (2, 3)."""
-    axis = (seats[1] - seats[0]) / np.linalg.norm(seats[1] - seats[0])
-    arm = positions - seats[0]
-    return np.asarray(np.linalg.norm(arm - (arm @ axis)[:, None] * axis, axis=1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,12 +41,12 @@ def joint_answers(
     contacts: Sequence[LoadedContact],
     states: Sequence[LoadedState],
     dissipated: Sequence[Array],
-    regions: Regions,
+    paths: LoadPaths,
 ) -> JointAnswers:
     """Return what the joints do under each state; dissipated (joint,) [J]: on the way to each."""
     found = [
         [
-            _joint(contact, joint.interface, regions.bolt[k], state.motions[k], state.tractions[k])
+            _joint(contact, joint.interface, paths.owner[k], state.motions[k], state.tractions[k])
             for k, (joint, contact) in enumerate(zip(structure.joints, contacts, strict=True))
         ]
         for state in states
@@ -108,7 +61,7 @@ def _joint(contact: LoadedContact, interface: Any, bolt: Index, motion: Array, t
     touched = float(weights @ (contact.pressure > 0)) or NAN
     whole = _Carried.of(interface, traction, weights, np.ones(len(weights), dtype=bool))
     parts: dict[int, float] = {}
-    for index in np.unique(bolt):
+    for index in np.unique(bolt[bolt >= 0]):
         own = _Carried.of(interface, traction, weights, bolt == index)
         if own.normal > 0:
             parts[int(index)] = own.equivalent / own.normal
@@ -188,7 +141,7 @@ def bolt_answers(
     contacts: Sequence[LoadedContact],
     preload: Array,
     states: Sequence[tuple[LoadedState, Array, Array]],
-    regions: Regions,
+    paths: LoadPaths,
 ) -> BoltAnswers:
     """Return what the bolts do.
 
@@ -197,20 +150,22 @@ def bolt_answers(
         contacts: Of each joint.
         preload: Force of each bolt [N] (b,) before any load.
         states: Of each case: its equilibrium, its displacement and the linear one [m] (unknowns,).
-        regions: Which points belong to which bolt.
+        paths: Which joints each bolt clamps, and which of their points are its own.
     """
     change, linear, ends, working, transverse = [], [], [], [], []
     for state, motion, straight in states:
         here = bolt_changes(structure, state, motion)
+        ends_here = [bent(structure, k, state, motion) for k in range(len(here))]
         change.append(here)
         linear.append(bolt_changes(structure, state, straight))
-        ends.append([_bent(structure, k, state, motion) for k in range(len(here))])
-        pairs = [_carried(structure, contacts, state, regions, k) for k in range(len(here))]
-        working.append([_greatest(here[k] - lost) for k, (lost, _) in enumerate(pairs)])
-        transverse.append([across.max(initial=0.0) for _, across in pairs])
+        ends.append([(one.moment, float(np.linalg.norm(one.shear))) for one in ends_here])
+        crossing = cut_loads(contacts, state, paths, here)
+        # F_A: of several cuts the one that more crosses; not known of a bolt that holds no joint
+        working.append([max(loads, key=abs, default=NAN) for loads in crossing])
+        transverse.append(transverse_loads(structure, contacts, state, paths, ends_here))
     moment, shear = np.moveaxis(np.array(ends), 2, 0)
     force, load = preload + np.array(change), np.array(working)
-    some = np.abs(load) > NOTHING * preload
+    some = np.abs(load) > NOTHING * preload  # not where F_A is not known
     areas = np.array([_least_area(structure, k) for k in range(len(preload))])
     return BoltAnswers(
         bolt_force=force,
@@ -233,64 +188,23 @@ def bolt_changes(structure: BoltedStructure, state: LoadedState, motion: Array) 
         if isinstance(fitted, FittedBolt):
             out[k] -= fitted.axial_stiffness * state.acting.longer[k]
         else:
-            out[k] -= fitted.drawn @ _own_heat(structure, fitted, state)
+            out[k] -= fitted.drawn @ own_heat(structure, fitted, state)
     return np.asarray(out)
 
 
-def _bent(structure: BoltedStructure, index: int, state: LoadedState, motion: Array) -> tuple[float, float]:
-    """Greater bending moment [N m] of both ends of a bolt, and force across it [N]; NaN without a shank."""
-    fitted = structure.fitted_bolts[index]
-    if isinstance(fitted, FittedBolt):
-        ends = fitted.end_forces(motion)
-        if ends is None:
-            return NAN, NAN
-        return float(max(np.linalg.norm(ends[4:6]), np.linalg.norm(ends[10:12]))), float(np.linalg.norm(ends[1:3]))
-    moves = _section_moves(structure, fitted)
-    layer = np.repeat(np.any(fitted.pull.reshape(-1, 3) != 0, axis=1), 3)
-    # in the plane across the shank: nodes that the bolt shares with another part bear forces of that part, too
-    resisted = np.where(layer[:, None], product(structure.matrices[0], moves), 0.0)
-    work = resisted.T @ motion - moves.T @ _own_heat(structure, fitted, state)
-    return float(np.linalg.norm(work[2:])), float(np.linalg.norm(work[:2]))
+def cut_loads(
+    contacts: Sequence[LoadedContact], state: LoadedState, paths: LoadPaths, change: Array
+) -> list[list[float]]:
+    """Load [N] that crosses each cut of each bolt, positive where it pulls the parts apart.
 
-
-def _section_moves(structure: BoltedStructure, fitted: FittedSolidBolt) -> Array:
-    """Motions (unknowns, 4) of the far half of a meshed bolt: along two axes across it, and about them."""
-    axis = fitted.seats[1] - fitted.seats[0]
-    axis = axis / np.linalg.norm(axis)
-    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    first /= np.linalg.norm(first)
-    across = (first, np.cross(axis, first))
-    points = structure.mesh.points
-    far = np.any(fitted.drawn.reshape(-1, 3) != 0, axis=1)[:, None]
-    arm = points - fitted.bolt.place(structure.mesh)
-    moves = [np.where(far, one, 0.0) for one in across] + [np.where(far, np.cross(one, arm), 0.0) for one in across]
-    return np.stack([one.ravel() for one in moves], axis=1)
-
-
-def _own_heat(structure: BoltedStructure, fitted: FittedSolidBolt, state: LoadedState) -> Array:
-    """Nodal forces [N] (unknowns,) of the heat of a meshed bolt."""
-    part = fitted.bolt.part
-    strain = state.acting.strains.get(part, 0.0)
-    return thermal_forces(structure.mesh, part, structure.materials[part], strain)
-
-
-def _carried(
-    structure: BoltedStructure, contacts: Sequence[LoadedContact], state: LoadedState, regions: Regions, index: int
-) -> tuple[Array, Array]:
-    """Change of the normal force, and shear with torque [N], round a bolt at each joint that it clamps."""
-    change, across = [], []
-    for k in regions.joints[index]:
-        some = regions.bolt[k] == index
-        contact = contacts[k]
-        own = _Carried.of(structure.joints[k].interface, state.tractions[k], contact.weights, some)
-        change.append(own.normal - float(contact.weights[some] @ contact.pressure[some]))
-        across.append(own.equivalent)
-    return np.array(change), np.array(across)
-
-
-def _greatest(values: Array) -> float:
-    """The value of greatest size; 0 where there is none."""
-    return float(values[np.argmax(np.abs(values))]) if len(values) else 0.0
+    It is the change of the bolt's force less that of the clamp force round it. Over all bolts that hold the same joints
+    this is all that the load sends through them.
+    """
+    lost = [one.weights * (-t[:, 0] - one.pressure) for one, t in zip(contacts, state.tractions, strict=True)]
+    return [
+        [float(change[k] - sum(lost[j][paths.owner[j] == k].sum() for j in cut.joints)) for cut in cuts]
+        for k, cuts in enumerate(paths.cuts)
+    ]
 
 
 def _least_area(structure: BoltedStructure, index: int) -> float:

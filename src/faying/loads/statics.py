@@ -23,7 +23,7 @@ from faying.joint.equilibrium import admissible
 from faying.loads.acting import Acting
 from faying.loads.contact import ContactState, LoadedContact
 from faying.memory import require
-from faying.numerics.product import combined, product
+from faying.numerics.product import combined
 from faying.numerics.span import GrowingColumns, extension
 from faying.typing import Array, Index
 
@@ -174,11 +174,6 @@ class LoadStatics:
                 f"loads: the linear answer does not converge in {ROUNDS} rounds; is a part free to move?"
             )
         return [self._vectors.values @ x[:, k] + one.moved for k, one in enumerate(actings)]
-
-    def energy_norm(self, motion: Array, acting: Acting) -> float:
-        """Root of twice the energy [J^0.5] of a displacement less what supports prescribe, under the springs K_0."""
-        y = motion - acting.moved
-        return float(np.sqrt(max(float(y @ product(self.stiffness, y)), 0.0)))
 
     def solve(self, cases: Sequence[tuple[str, LoadedState, Acting, int]]) -> list[list[LoadedState]]:
         """Find the states on the way to loads.

@@ -20,8 +20,9 @@ STYLE = (
     "@media print{.bolt .scroll{break-inside:auto}.bolt h3{break-after:avoid}}</style>"
 )
 SCOPE = (
-    "Concentric clamping and loading. The load factor holds while the joint neither opens nor slips. Bending of the "
-    "bolt is not in the sheet."
+    "Concentric clamping and loading. Load cases are solved at the least preload in service (R5, R9, R12), at the mean "
+    "one (load factor of R3) and at the greatest at assembly (R8, R10). Typed loads are shared by the load factor, "
+    "which holds while the joint neither opens nor slips. Bending of the bolt is not in the sheet."
 )
 
 
@@ -70,14 +71,14 @@ def terminal(found: BoltSheets) -> str:
     """Return all sheets as text."""
     parts = []
     for sheet in found.sheets:
-        head = f"bolt {sheet.bolt!r}, {sheet.size}, at {show(found.load, 'N')}: {sheet.verdict}"
+        head = f"bolt {sheet.bolt!r}, {sheet.size}, at {show(sheet.preload, 'N')}: {sheet.verdict}"
         parts += [head, "", text(rows_of(sheet), left=(0, 1, 5)), "", text(inputs_of(sheet), left=(0, 1)), ""]
     return folded("\n".join([*parts, SCOPE]))
 
 
 def html(found: BoltSheets) -> str:
     """Return all sheets as one page, each bolt on its own sheet when printed."""
-    body = [STYLE, f"<h1>{escape(found.title)}: bolt sheets at {escape(show(found.load, 'N'))}</h1>"]
+    body = [STYLE, f"<h1>{escape(found.title)}: bolt sheets</h1>"]
     for sheet in found.sheets:
         rows = sheet.rows
         limits = ["-" if row.limit is None else f"{row.limit.symbol} = {value_of(row.limit)}" for row in rows]
@@ -93,7 +94,8 @@ def html(found: BoltSheets) -> str:
             ("source", [row.source for row in rows], ""),
         )
         body += [
-            f'<section class="bolt"><h2>Bolt "{escape(sheet.bolt)}", {escape(sheet.size)}</h2>',
+            f'<section class="bolt"><h2>Bolt "{escape(sheet.bolt)}", {escape(sheet.size)}, ',
+            f"at {escape(show(sheet.preload, 'N'))}</h2>",
             f"<p>{escape(sheet.verdict)}. {escape(SCOPE)}</p>",
             page.table(detail, "sheet"),
             "<h3>Inputs</h3>",

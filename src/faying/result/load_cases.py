@@ -80,12 +80,18 @@ class LoadCases(Recorded):
         "case bolt", "N m", "greater bending moment of both ends of the bolt", "bolts/", gaps=True
     )
     bolt_shear: Array = variable("case bolt", "N", "force across the bolt at its head", "bolts/", gaps=True)
-    working_load: Array = variable("case bolt", "N", "load that pulls the parts apart at the bolt, F_A", "bolts/")
+    working_load: Array = variable(
+        "case bolt",
+        "N",
+        "load that pulls the parts apart through the cut that the bolt holds, F_A",
+        "bolts/",
+        gaps=True,
+    )
     load_factor: Array = variable(
         "case bolt", "1", "change of the bolt's force over the working load", "bolts/", gaps=True
     )
     transverse_load: Array = variable(
-        "case bolt", "N", "load across the bolt that its part of the joint carries", "bolts/"
+        "case bolt", "N", "share of the bolt of what crosses its joints, by friction and by shanks, F_Q", "bolts/"
     )
     seat_pressure: Array = variable("case bolt", "Pa", "mean pressure on the smaller seat", "bolts/", gaps=True)
     head_friction: Array = variable("bolt", "1", "coefficient of friction under the head", "bolts/", gaps=True)

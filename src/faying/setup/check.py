@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 
 from faying.bolt.bolt import Bolt, BoltPlace, each_in_its_place
 from faying.bolt.dowel import Dowel, DowelPlace
-from faying.bolt.solid_bolt import SolidBolt
+from faying.bolt.solid_bolt import SolidBolt, SolidPlace
 from faying.case.case import SIZES, name_faults
 from faying.case.places import named_points, on_structure
 from faying.errors import FayingError, InputError
@@ -21,7 +21,7 @@ from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import TOUCHING, chosen, points_of
 from faying.joint.bolted import nothing_moves, seat_apart
 from faying.joint.joint import each_pair_once
-from faying.joint.strength import SolidPlace, bolt_notes, material_notes
+from faying.joint.strength import bolt_notes, material_notes
 from faying.memory import available
 from faying.misuse import checked_call
 from faying.notes import Note

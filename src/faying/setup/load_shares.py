@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from faying.bolt.bolt import BoltPlace
+from faying.bolt.solid_bolt import SolidPlace
 from faying.bolt.vdi2230 import cone_angle
 from faying.fe.faces import NamedFaces
 from faying.geometry.seen_along import RING, across, circle, hits
-from faying.joint.clamping import seat_ring
-from faying.joint.strength import SolidPlace
+from faying.joint.load_path import seat_ring
 from faying.typing import Array
 
 RADII = 40  # circles between the hole and the edge of the cone

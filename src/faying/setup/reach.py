@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.bolt.bolt import BoltPlace
+from faying.bolt.solid_bolt import SolidPlace
 from faying.bolt.vdi2230 import cone_pressure
 from faying.case.case import surfaces_of
 from faying.contact.build import AUTO
@@ -14,10 +15,9 @@ from faying.contact.law import ContactLaw
 from faying.contact.mates import line_of
 from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError, InputError
-from faying.geometry.seen_along import across
-from faying.joint.clamping import SEAT_REACH, seat_ring
+from faying.geometry.seen_along import across, hits
 from faying.joint.joint_law import JointLaw
-from faying.joint.strength import SolidPlace
+from faying.joint.load_path import BoltLine, seat_ring
 from faying.materials import Material
 from faying.setup.load_shares import WIDE, Share, load_shares
 from faying.setup.sketch import Sketch
@@ -151,27 +151,34 @@ def _greatest(sketch: Sketch, place: BoltPlace | SolidPlace) -> float:
 
 
 def _through(sketch: Sketch, joint: JointChoice) -> list[tuple[BoltPlace | SolidPlace, float]]:
-    """The bolts that clamp a joint, with the depth [m] of the joint below the head: within 1.5 seats of their axes."""
-    corners = np.concatenate([sketch.mesh.points[rows.ravel()] for rows in sketch.mesh.face(joint.faces[0])])
+    """The bolts that pass a joint, with the depth [m] of the joint below the head."""
+    parts = [sketch.mesh.face_part[face] for face in joint.faces]
+    corners = [np.concatenate([sketch.mesh.points[rows[:, :3]] for rows in sketch.mesh.face(f)]) for f in joint.faces]
     out: list[tuple[BoltPlace | SolidPlace, float]] = []
     for place in sketch.fitted_bolts:
-        if isinstance(place, SolidPlace) and {*place.bolt.faces} & {*joint.faces}:
+        if place.bolt.part in parts:
             continue  # its own seats carry all of its force
-        arm = corners - place.point
-        depth = arm @ place.axis
-        offset = np.linalg.norm(arm - np.outer(depth, place.axis), axis=1)
-        level = float(np.median(depth))
-        ring = seat_ring(sketch.mesh, place) if isinstance(place, BoltPlace) else None
-        within = _inside(corners, place) or (ring is not None and offset.min() <= SEAT_REACH * ring[1])
-        if 0 < level < place.length and within:
-            out.append((place, level))
+        line = BoltLine.of(sketch.mesh, place)
+        depths = [_passed_at(line, one) for one in corners]
+        if all(len(some) for some in depths):
+            out.append((place, float(np.concatenate(depths).mean())))
     return out
 
 
-def _inside(corners: Array, place: BoltPlace | SolidPlace) -> bool:
-    """Whether the axis of a bolt runs within the box around the corners of a face, seen along the axis."""
-    flat = (corners - place.point) @ across(place.axis)
-    return bool(np.all(flat.min(axis=0) <= 0) and np.all(flat.max(axis=0) >= 0))
+def _passed_at(line: BoltLine, corners: Array) -> Array:
+    """Depths [m] below the head at which a bolt passes triangles (t, 3, 3): where each is nearest to the axis."""
+    plane = across(line.axis)
+    flat = (corners - line.seats[0]) @ plane
+    inside, depth = hits(flat, line.depth(corners.reshape(-1, 3)).reshape(-1, 3), np.zeros((1, 2)))
+    side, flat_side = np.roll(corners, -1, axis=1) - corners, np.roll(flat, -1, axis=1) - flat
+    size = np.maximum((flat_side**2).sum(axis=2), np.finfo(float).tiny)
+    along = np.clip(-(flat * flat_side).sum(axis=2) / size, 0.0, 1.0)
+    on_side = corners + along[:, :, None] * side
+    best = np.argmin(np.linalg.norm((on_side - line.seats[0]) @ plane, axis=2), axis=1)
+    nearest = np.where(inside, line.seats[0] + depth * line.axis, on_side[np.arange(len(best)), best])
+    normals = np.cross(side[:, 0], side[:, 1])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]
+    return line.depth(nearest[line.passes(nearest, normals)])
 
 
 def _rim(sketch: Sketch, one: Share, mine: float) -> tuple[float, float] | None:

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from faying.bolt.bolt import BoltPlace
+from faying.bolt.solid_bolt import SolidPlace
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.face_triangles import FaceTriangles
-from faying.joint.strength import SolidPlace
 from faying.materials import Material
 from faying.study.study import Study
 
