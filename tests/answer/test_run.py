@@ -37,7 +37,8 @@ def test_shapes_and_bounds(result):
     assert result.loads.tolist() == [2000.0, 6000.0]
     assert result.frequencies.shape == result.loss_factors.shape == (2, 6)
     assert result.rigid.shape == (6,)
-    assert result.rigid.max() < 1e-2
+    # squared frequencies are rounded at some 1e-16 of the stiffness over mass of an element, 1e5 times those of mode 1
+    assert result.rigid.max() < 1e-5 * result.frequencies.min()
     assert np.all(result.frequencies > 1.0)
     assert np.all(result.frequencies >= result.free * (1 - 1e-9))
     assert np.all(result.loss_factors > 0)

@@ -51,7 +51,7 @@ def test_a_map_keeps_constants_the_force_and_the_limits_of_the_values():
     points, triangles, places, weights = grid()
     rng = np.random.default_rng(1)
     values = np.stack([np.full(len(places), 3e6), rng.uniform(1e6, 9e6, len(places))])
-    found = joint_map(points, triangles, places, weights, {"pressure": values})
+    found = joint_map(points, [triangles], places, weights, {"pressure": values})
     at = found.fields["pressure"]
     np.testing.assert_allclose(at[0], 3e6, rtol=1e-12)
     assert at[1].min() >= values[1].min()
@@ -69,12 +69,29 @@ def test_a_map_converges_to_a_smooth_field():
     for n in (6, 12, 24):
         points, triangles, places, weights = grid(n)
         field = np.exp(-(((places - 0.015) * [1, 1, 0]) ** 2).sum(axis=1) / 0.008**2)
-        found = joint_map(points, triangles, places, weights, {"p": field[None]})
+        found = joint_map(points, [triangles], places, weights, {"p": field[None]})
         corners = points[found.parents].mean(axis=1)
         exact = np.exp(-(((corners - 0.015) * [1, 1, 0]) ** 2) @ np.ones(3) / 0.008**2)
         errors.append(np.sqrt(np.mean((found.fields["p"][0] - exact) ** 2)))
     assert errors[1] < errors[0] / 2.5
     assert errors[2] < errors[1] / 2.5
+
+
+@pytest.mark.parametrize("first", [True, False], ids=["pad first", "plate first"])
+def test_a_map_covers_what_touches_and_nothing_else(first):
+    """A pad of 10 x 10 mm on a plate of 30 x 30 mm; pads that meet in part cover the elements that they meet on."""
+    points, triangles, _, _ = grid(6)
+    pad = points / 3 + [0.01, 0.01, 0]
+    both = np.concatenate([points, pad])
+    faces = [triangles, triangles + len(points)][:: -1 if first else 1]
+    places, weights = grid(6)[2] / 3 + [0.01, 0.01, 0], np.full(len(grid(6)[2]), 1.0)
+    found = joint_map(both, faces, places, weights, {"p": np.ones((1, len(places)))})
+    corner = both[found.parents].mean(axis=1)[found.triangles]
+    assert np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])[:, 2].sum() / 2 == pytest.approx(1e-4)
+    half = places[:, 0] < 0.015 - 1e-9
+    part = joint_map(both, faces, places[half], weights[half], {"p": np.ones((1, half.sum()))})
+    corner = both[part.parents].mean(axis=1)
+    assert corner[:, 0].max() == pytest.approx(0.015)
 
 
 def test_faces_of_a_mesh_are_named_ones_then_smooth_regions():

@@ -1,13 +1,15 @@
 """Maps on the faces of joints: from values at quadrature points to values that can be shaded over elements.
 
-The first face of a joint is covered by the triangles of its element faces, each cut into four at the middles of its
-edges, as a second-order element has nodes there. A value at a corner of these triangles is the mean of the values at
-the points around it, weighted by their area and by the linear hat function of the corner: the lumped projection on
-continuous, piecewise linear functions. It makes no value greater than the greatest at any point, none less than the
-least, and the integral over the face is that of the points. Peaks narrower than a triangle are flattened; tables give
-the greatest value at any point. A corner without a point around it takes the mean of its neighbours.
+Of the two faces of a joint the smaller one is covered, as far as the faces touch, by the triangles of its element
+faces. Each is cut into four at the middles of its edges, as a second-order element has nodes there. A value at a corner
+of these triangles is the mean of the values at the points around it, weighted by their area and by the linear hat
+function of the corner: the lumped projection on continuous, piecewise linear functions. It makes no value greater than
+the greatest at any point, none less than the least, and the integral over the face is that of the points. Peaks
+narrower than a triangle are flattened; tables give the greatest value at any point. A corner without a point around it
+takes the mean of its neighbours.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +23,7 @@ TRIED = 12  # triangles, nearest by their centres, in which a point is looked fo
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FaceValues:
-    """Triangles on the first face of a joint, each triangle of the outline cut into four, with values at their corners.
+    """Triangles where the faces of a joint touch, each of the outline cut into four, with values at their corners.
 
     Args:
         parents: Two nodes of the outline (k, 2) between which each corner lies half-way; the same twice at a node.
@@ -60,9 +62,8 @@ def barycentric(corners: Array, places: Array) -> Array:
     return np.stack([1 - second - third, second, third], axis=-1)
 
 
-def projection(points: Array, triangles: Index, places: Array, weights: Array) -> Any:
-    """Sparse matrix (corners, places) that takes values at places with areas `weights` to the corners of triangles."""
-    from scipy.sparse import coo_array, csr_array, diags_array
+def nearest(points: Array, triangles: Index, places: Array) -> tuple[Index, Array]:
+    """Triangle (q,) in or next to which each place (q, 3) lies, and its linear hat functions there (q, 3)."""
     from scipy.spatial import cKDTree
 
     corners = points[triangles]
@@ -72,8 +73,15 @@ def projection(points: Array, triangles: Index, places: Array, weights: Array) -
     best = hats.min(axis=2).argmax(axis=1)
     row = np.arange(len(places))
     found = np.clip(hats[row, best], 0.0, None)
-    found /= found.sum(axis=1, keepdims=True)
-    where = triangles[near[row, best]]
+    return near[row, best], found / found.sum(axis=1, keepdims=True)
+
+
+def projection(points: Array, triangles: Index, places: Array, weights: Array) -> Any:
+    """Sparse matrix (corners, places) that takes values at places with areas `weights` to the corners of triangles."""
+    from scipy.sparse import coo_array, csr_array, diags_array
+
+    which, found = nearest(points, triangles, places)
+    row, where = np.arange(len(places)), triangles[which]
     shares = (found * weights[:, None]).ravel(), (where.ravel(), np.repeat(row, 3))
     spread = coo_array(shares, shape=(len(points), len(places))).tocsr()
     sums = np.asarray(spread.sum(axis=1)).ravel()
@@ -95,17 +103,30 @@ def projection(points: Array, triangles: Index, places: Array, weights: Array) -
     return mean
 
 
-def joint_map(points: Array, triangles: Index, places: Array, weights: Array, fields: dict[str, Array]) -> FaceValues:
+def touching(points: Array, faces: Sequence[Index], places: Array) -> Index:
+    """Triangles (t, 3), of the smaller of two faces, in which places (q, 3) [m] of their joint lie."""
+
+    def area(triangles: Index) -> float:
+        a, b, c = np.moveaxis(points[triangles], 1, 0)
+        return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+
+    face = min(faces, key=area)
+    return np.asarray(face[np.unique(nearest(points, face, places)[0])])
+
+
+def joint_map(
+    points: Array, faces: Sequence[Index], places: Array, weights: Array, fields: dict[str, Array]
+) -> FaceValues:
     """Return the map of a joint.
 
     Args:
         points: Nodes of the outline (n, 3) [m].
-        triangles: Triangles of the joint's first face (t, 3).
+        faces: Triangles (t, 3) of both faces of the joint, the first one first.
         places: Points of the joint (q, 3) [m].
         weights: Area of each [m2] (q,).
         fields: Name -> values (loads, q) at these points, or (1, q).
     """
-    parents, quarters = quartered(triangles)
+    parents, quarters = quartered(touching(points, faces, places))
     matrix = projection(points[parents].mean(axis=1), quarters, places, weights)
     at_corners = {name: np.asarray((matrix @ values.T).T) for name, values in fields.items()}
     return FaceValues(parents=parents, triangles=quarters, fields=at_corners)

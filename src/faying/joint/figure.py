@@ -116,30 +116,30 @@ def in_plane(places: Array) -> tuple[Array, tuple[str, str]]:
 def pressure_axes(
     outer: Outline,
     points: Array,
-    face: str,
+    faces: tuple[str, str],
     springs: Springs[Interface],
     *,
     most: float,
     title: str,
     ax: "Axes | None" = None,
 ) -> "Axes":
-    """Draw the pressure on a joint, shaded over the elements of its first face.
+    """Draw the pressure on a joint, shaded over the elements where its faces touch.
 
     Args:
         outer: The outer surface of the structure.
         points: Of the mesh (nodes, 3) [m].
-        face: First face of the joint.
+        faces: Names of both faces of the joint.
         springs: Of the joint, with the pressure at their points.
         most: Greatest pressure of the colours [Pa].
         title: Joint and preload; the share that is open stands behind it.
         ax: Axes to draw into; new ones where None.
     """
-    here = outer.face_of_triangle == outer.faces.index(face)
+    here = [outer.triangles[outer.face_of_triangle == outer.faces.index(face)] for face in faces]
     points = points[outer.nodes]
     weights, pressure = springs.interface.weights, springs.pressure
     values = joint_map(
         points,
-        outer.triangles[here],
+        [face for face in here if len(face)],
         springs.interface.positions,
         weights,
         {"pressure": pressure[None], "contact": (pressure[None] > 0).astype(float)},

@@ -226,7 +226,7 @@ class State(Summary):
         return pressure_axes(
             self.structure.surface(),
             self.structure.mesh.points,
-            self.structure.joints[number].faces[0],
+            self.structure.joints[number].faces,
             self.springs[number],
             most=max(float(one.pressure.max()) for one in self.springs),
             title=f"{names[number]}, {self.load}",

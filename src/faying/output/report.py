@@ -263,8 +263,8 @@ FIGURES = {
     ),
     "pressure": ReportFigure(
         draw=structure.pressures,
-        caption="Pressure on the first face of each joint at the least and the greatest preload. Grey: open; the line "
-        "is the edge of contact.",
+        caption="Pressure where the faces of each joint touch, at the least and the greatest preload. Grey: open; the "
+        "line is the edge of contact.",
     ),
     "slip": ReportFigure(
         draw=structure.slips,

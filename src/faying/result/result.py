@@ -54,7 +54,7 @@ class Result(RunRecord):
     def save_vtu(self, path: str | Path) -> list[Path]:
         """Write files for ParaView: NAME.pvd, which is opened, and one .vtu for each preload.
 
-        Each holds the outer surface with every mode shape, real and imaginary, and the first face of each joint with
+        Each holds the outer surface with every mode shape, real and imaginary, and what touches of each joint with
         pressure, gap, slip, k_n and k_t in SI units, NaN elsewhere; part, face and joint of each triangle, from 0, -1
         where there is none; preload, frequencies and loss factors. ParaView's time is the preload [N].
 

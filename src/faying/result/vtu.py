@@ -1,6 +1,6 @@
 """Results for ParaView: one file of VTK's XML format for each preload, and one .pvd that names them all.
 
-Each .vtu holds the outer surface and, after its points, the first face of every joint. The format: VTK file formats,
+Each .vtu holds the outer surface and, after its points, what touches of every joint. The format: VTK file formats,
 XML, UnstructuredGrid (docs.vtk.org); arrays are little-endian, written inline in base64 with their length before them.
 """
 
