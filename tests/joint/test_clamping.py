@@ -301,3 +301,33 @@ def test_a_meshed_bolt_divides_between_itself_and_its_members():
     turned = bolt.rigidity + bolt.pull @ splu(shifted).solve(-bolt.pull)
     assert 1 / turned == pytest.approx(found.bolt[0] + found.members[0], rel=1e-4)
     assert 0 < found.members[0] < found.bolt[0]
+
+
+def test_bonded_seats_of_a_meshed_bolt_are_very_stiff_ones():
+    """Members, load factor and load path do not depend on whether a seat is bonded or in contact that hardly gives."""
+    from faying.bolt.solid_bolt import SolidBolt
+    from tests.helpers.voxels import bolted
+
+    def made(seat):
+        mesh = bolted(kind="hex8")
+        pairs = [("lower.joint", "upper.joint"), ("bolt0.head", "upper.seat0"), ("bolt0.nut", "lower.seat0")]
+        if seat is None:
+            mesh, pairs = mesh.bonded_at(*pairs[1:]), pairs[:1]
+        joints = tuple(
+            FittedJoint(name=a, faces=(a, b), interface=join(mesh, a, b), law=held(seat if "bolt" in a else 2e13))
+            for a, b in pairs
+        )
+        bolt = SolidBolt(name="b", part="bolt0", faces=("bolt0.head", "bolt0.nut"), at=(0.02, 0.02, 13e-3))
+        structure = Structure(mesh=mesh, materials=dict.fromkeys(mesh.parts, STEEL), joints=joints, bolts=(bolt,))
+        at = structure.springs([np.full(len(j.interface.weights), 5e6) for j in joints])
+        K, M = structure.coupled(at)[0], structure.dynamic_matrices[1]
+        modes = lowest_modes(K, M, 8, shift_frequency=structure.shift_frequency)
+        return structure, clamping(structure, K, modes, at)
+
+    bonded, stiff = made(None), made(1e16)
+    assert bonded[1].members == pytest.approx(stiff[1].members, rel=0.01)
+    assert bonded[1].load_factor == pytest.approx(stiff[1].load_factor, rel=0.01)
+    assert bonded[1].members[0] > 0.05 * bonded[1].bolt[0]
+    for structure, _ in (bonded, stiff):
+        ((cut,),) = LoadPaths.of(structure).cuts
+        assert (cut.joints, cut.depth) == ((0,), pytest.approx(10e-3))
