@@ -331,3 +331,18 @@ def test_bonded_seats_of_a_meshed_bolt_are_very_stiff_ones():
     for structure, _ in (bonded, stiff):
         ((cut,),) = LoadPaths.of(structure).cuts
         assert (cut.joints, cut.depth) == ((0,), pytest.approx(10e-3))
+
+
+def test_a_bolt_among_others_has_the_cone_of_the_same_bolt_alone():
+    """Of two on plates of 80 x 40 mm each has a square of 40 mm, five seats wide; alone it has all."""
+    from tests.helpers.plates import plates, stacked
+
+    mesh = stacked(counts=(16, 8, 2), size=(0.08, 0.04, 0.01))
+    given = {"diameter": 5e-3, "material": STEEL, "seat": (5e-3, 8e-3)}
+    both = tuple(Bolt(name=f"{x}", faces=("high.top", "low.bottom"), at=(x, 0.02, 0.0), **given) for x in (0.02, 0.06))
+    pair, alone = plates(mesh, bolts=both), plates(mesh, bolts=both[:1])
+    cones = [cone_of(one, LoadPaths.of(one), 0) for one in (pair, alone)]
+    assert cones[0] == pytest.approx(cones[1], rel=0.02)
+    E = faying.CATALOGUE["45 steel"].E
+    guideline = cone_compliance([(0.01, E), (0.01, E)], seat=8e-3, hole=5e-3, outer=40e-3)
+    assert cones[1] == pytest.approx(guideline, rel=1e-9)

@@ -30,6 +30,7 @@ ACCURACY = 1e-4  # of the residual of a solution: a compliance is right to its s
 MESHED = 1e-6  # the same where a bolt is meshed, whose numbers are all of first order
 MAX_STEPS = 2000
 NAN = float("nan")
+WIDEST = 5.0  # diameters of the seat: what lies farther out bears nothing, but the guideline's angle goes on growing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,8 +147,9 @@ def _member_energy(
 def cone_of(structure: BoltedStructure, paths: LoadPaths, index: int) -> float:
     """Return the compliance [m/N] of what a bolt clamps by the deformation cone of VDI 2230.
 
-    The parts are as wide as a ring of the area of the joint that is the bolt's own, the mean of its joints. NaN for a
-    meshed bolt, where its seat is no ring, and where its joints make no chain of parts from seat to seat.
+    The parts are as wide as a ring of the area of the joint that is the bolt's own, the mean of its joints, and five
+    seats at most. NaN for a meshed bolt, where its seat is no ring, and where its joints make no chain of parts from
+    seat to seat.
     """
     fitted, mesh, cuts = structure.fitted_bolts[index], structure.mesh, paths.cuts[index]
     seat = seat_ring(mesh, fitted) if isinstance(fitted, FittedBolt) else None
@@ -160,6 +162,7 @@ def cone_of(structure: BoltedStructure, paths: LoadPaths, index: int) -> float:
     depths = [0.0, *(cut.depth for cut in cuts), paths.lines[index].length]
     lengths, moduli = np.diff(depths).tolist(), [structure.materials[part].E for part in names]
     outer = float(np.mean([np.sqrt(4 * cut.area / np.pi + seat[0] ** 2) for cut in cuts]))
+    outer = min(outer, WIDEST * seat[1])
     if outer <= seat[0] or min(lengths) <= 0:
         return NAN
     return cone_compliance(list(zip(lengths, moduli, strict=True)), seat=seat[1], hole=seat[0], outer=outer)
