@@ -1,12 +1,15 @@
 """The report of a result made by hand: what it says of joints and laws."""
 
 import re
+from dataclasses import replace
+from html import escape
 from itertools import pairwise
 
 import numpy as np
 
 from faying.output import answer, report
 from faying.output import page as page_parts
+from faying.output.sections import sections
 from faying.result import Result
 from tests.helpers.figures import result as rich
 from tests.helpers.results import small_result
@@ -62,6 +65,22 @@ def test_chapters_stand_in_their_order_and_the_answer_is_first():
     levels = [int(level) for level in re.findall(r"<h([1-6])", page)]
     assert levels[0] == 1
     assert all(b <= a + 1 for a, b in pairwise(levels))  # no level is passed over
+
+
+def test_every_figure_that_is_drawn_is_shown_once():
+    """Those of the list, and that of a quantity which declares table, figure and chapter."""
+    force = np.array([[10.0, 20.0], [30.0, 45.0]])
+    found = replace(rich(), dowels=("left", "right"), dowel_shear=np.resize(force, (len(rich().loads), 2)))
+    drawn = report.figures(found)
+    assert {"dowel_shear", "intervals", "pressure", "mac"} <= set(drawn)
+    lines = drawn["dowel_shear"].axes[0].lines
+    assert [line.get_ydata().tolist() for line in lines] == found.dowel_shear.T.tolist()
+    names = [name for name in {**report.FIGURES, **drawn} if not name.startswith(report.TEST)]
+    page = report.html(replace(found, hammer=None), {name: f"<i>figure-{name}</i>" for name in names})
+    assert {name: page.count(f"<i>figure-{name}</i>") for name in names} == dict.fromkeys(names, 1)
+    for section in sections(found):
+        if section.name not in ("answer", "hammer"):
+            assert page.count(f"<h3>{page_parts.typeset(escape(section.title))}</h3>") == 1, section.name
 
 
 def test_columns_of_zeros_are_left_out_and_named():

@@ -8,7 +8,7 @@ import pytest
 
 import faying
 from faying.result import Result
-from faying.result.fields import load_texts
+from faying.result.fields import declared, load_texts
 from tests.helpers.scenes import two_boxes
 
 
@@ -81,26 +81,21 @@ def test_a_file_of_another_kind_is_refused(written, tmp_path):
         faying.load(tmp_path / "absent.nc")
 
 
-def test_a_file_of_an_earlier_version_has_all_in_its_root(written, tmp_path):
-    """Such files name variables as the fields and have numbers as labels of loads."""
-    from faying import netcdf
-    from faying.netcdf import Group, Variable
-    from faying.result.fields import RECORD, declared
-
-    result, path = written
-    tree = netcdf.read(path)
-    flat = {
-        meta.before or name: Variable(dims=meta.dims, values=getattr(result, name))
-        for name, meta in declared(Result).items()
-        if getattr(result, name) is not None
-    }
-    inner = {
-        name: one for name, one in tree.groups.items() if hasattr(result, name) and name not in ("joints", "bolts")
-    }
-    groups = {name: one for name, one in inner.items() if name not in ("parts", "points", "laws")}
-    attributes = {name: value for name, value in tree.attributes.items() if name != RECORD}
-    old = netcdf.write(tmp_path / "old.nc", Group(variables=flat, attributes=attributes, groups=groups))
-    assert faying.load(old) == result
+def test_a_number_that_is_none_never_enters_a_result(written):
+    """NaN stands only where a quantity declares gaps, and an infinite number nowhere."""
+    result, _ = written
+    for name, meta in declared(Result).items():
+        values = getattr(result, name)
+        if values is None or not values.size or values.dtype.kind not in "fc":
+            continue
+        for value in (np.nan, np.inf):
+            bad = np.array(values)
+            bad.flat[0] = value
+            if meta.gaps and np.isnan(value):
+                assert np.isnan(getattr(replace(result, **{name: bad}), name).flat[0])
+            else:
+                with pytest.raises(faying.InputError, match=f"NaN in {name};"):
+                    replace(result, **{name: bad})
 
 
 def test_labels_of_loads_differ():

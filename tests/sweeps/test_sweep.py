@@ -11,13 +11,15 @@ import faying
 from faying.answer.run import run
 from faying.case.case import surfaces_of
 from faying.form.form import Form
+from faying.form.waviness import Waviness
 from faying.joint.modal import ModesChoice
 from faying.joint.preload_case import PreloadCase
 from faying.reduction.reduce import Reduction
 from faying.study import Study, part_folder
 from faying.study.keys.law import LawChoice
+from faying.study.keys.varied import rooms, varied
 from faying.sweeps import sweep as module
-from faying.sweeps.axes import Grid, axis_of
+from faying.sweeps.axes import Axis, Grid, axis_of
 from faying.sweeps.sweep import sweep
 from faying.sweeps.variant_builder import VariantBuilder
 from tests.helpers.cluster import cluster_of
@@ -240,7 +242,7 @@ def test_faults_of_a_grid(plan):
         ("surface.D=1.5:2.5:3", "must be between 2 and 3"),
         ("bolt.preload=-1 kN:2 kN:3", "must be positive"),
         ("joint.friction=-1:1:3", "friction = -1; it must be at least 0"),
-        ("joint.friction=0:1e9:3", "friction = 1000000000; it must be at least 0 and below"),
+        ("joint.friction=0:1e9:3", "friction = 1000000000; it must be at least 0 and at most 10"),
         ("law.model=nope,jk", "no contact law 'nope'"),
         ("law.counterbody=x", "counterbody = 'x'; allowed is"),
         ("law.cutoff=0:1:3", "cutoff = 0; it must be between 0 and 1"),
@@ -346,3 +348,46 @@ def test_axes_of_a_form(plan):
         Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("joint.x.form.twist=0 um,4 um"))
     with pytest.raises(faying.InputError, match=r"joint\.form\.\{crown_along, crown_across, twist"):
         axis_of("joint.form.bump=0 um:3 um:4")
+
+
+TWO_VALUES = {  # of numbers whose range or unit leaves no room for those below
+    "surface.D": (2.3, 2.4),
+    "surface.G": (1e-10, 3e-10),
+    "surface.scan_area": (1e-6, 4e-6),
+    "law.counterbody": ("part", "rigid"),
+    "law.alpha": (0.1, 0.3),
+    "bolt.preload": (1e3, 3e3),
+    "joint.form.wave_length": (0.01, 0.02),
+    "joint.form.seed": (1, 2),
+    "joint.form.waviness_seed": (1, 2),
+}
+PAIR = (faying.CATALOGUE["45 steel"], faying.CATALOGUE["45 steel"])
+
+
+def acting(builder, index):
+    """All by which one point of a design acts on the answer."""
+    laws, forces, friction = builder.laws(index)
+    p = np.array([1e6, 1e7])
+    stiffness = [value for law in laws for value in (*law.stiffness(p), *law.loss(p))]
+    forms = [joint.form for joint in builder.design.point(index).study.joints]
+    return np.concatenate([*stiffness, forces]).tolist(), friction, forms, builder.scales(index)
+
+
+@pytest.mark.parametrize(
+    "key", [f"{room}.{name}" for room, one in rooms().items() if room != "law" for name in one.numbers] + ["law.alpha"]
+)
+def test_each_number_that_varies_acts_and_is_not_taken_for_another_value(plan, key):
+    """Every declared number: two values act apart, and one builder of laws gives what two builders of their own do."""
+    room, _, name = key.partition(".")
+    waves = replace(plan.joints[0], form=Form(wave_length=0.03, waviness=Waviness(Wq=1e-6)))
+    study = replace(plan, joints=(waves,)) if ".form." in key else plan
+    one = {"part": "part.upper", "material": f"material.{study.parts['upper']}"}.get(room, room)
+    unit = varied(f"{one}.{name}").parameter.unit
+    values = TWO_VALUES.get(key, {"m": (1e-6, 3e-6), "Pa": (190e9, 210e9), "kg/m^3": (7e3, 8e3)}.get(unit, (0.3, 0.6)))
+    axis = Axis(key=f"{one}.{name}", unit=unit, values=values)
+    grid = Grid(study=study, surfaces=surfaces_of(study), axes=(axis,))
+    shared = VariantBuilder(design=grid, pairs=(PAIR,))
+    found = [acting(shared, index) for index in (0, 1, 0)]
+    assert found[0] != found[1]
+    for index, mine in zip((0, 1, 0), found, strict=True):
+        assert mine == acting(VariantBuilder(design=grid, pairs=(PAIR,)), index)

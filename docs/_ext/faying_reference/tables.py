@@ -14,7 +14,6 @@ import faying
 from faying.contact.build import kinds
 from faying.contact.parameter import Parameter
 from faying.decks.programs import PROGRAMS
-from faying.form.form import VARIED as FORM
 from faying.materials import CATALOGUE
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse
@@ -25,7 +24,7 @@ from faying.result.fields import declared
 from faying.result.load_cases import LoadCases, LoadIntervals
 from faying.result.result import Result
 from faying.result.run_record import MeasuredComparison, Receptance
-from faying.study.keys import uncertain, varied
+from faying.study.keys.varied import rooms
 from faying.surface.estimators.table import ESTIMATORS
 from faying.units import EXAMPLES
 from faying_reference.docstrings import rendered
@@ -107,23 +106,19 @@ class Axes(Section):
 
     def lines(self) -> list[str]:
         """Return two tables."""
-        axes = {
-            **varied.OWN,
-            **{f"part.NAME.{name}": one for name, one in varied.OF_PART.items()},
-            **{f"joint.form.{name}": one for name, one in FORM.items()},
-        }
+        axes = []
+        for room, found in rooms().items():
+            for name, key in found.numbers.items() if room != "law" else ():
+                middle = ".NAME" if found.named == "always" else ""
+                axes.append(_axis(f"{room}{middle}.{name}", key.value))
+        axes.append(_axis("law.counterbody", rooms()["law"].numbers["counterbody"].value))
         head = ("name", "value", "meaning")
-        out = table(head, [_axis(name, one) for name, one in axes.items()], (26, 30, 44))
-        out += [
+        return [
+            *table(head, axes, (26, 30, 44)),
             "Besides ``law.NAME`` for every number that the study's law takes (:doc:`../theory/laws`), and",
             "``law.model``. A bolt, a joint or a part is named in the middle: ``bolt.NAME.preload``.",
             "",
-            "Under ``[uncertain]`` there are also, for each material:",
-            "",
         ]
-        return out + table(
-            head, [_axis(f"material.NAME.{name}", one) for name, one in uncertain.OF_MATERIAL.items()], (26, 30, 44)
-        )
 
 
 def _axis(name: str, one: Parameter) -> tuple[str, str, str]:

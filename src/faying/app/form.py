@@ -15,8 +15,8 @@ from faying.setup.edit import edited, parsed, written
 from faying.setup.lines import KeyPath, line_of, lines_of, name_of
 from faying.study.declaration.declared import NAME, NUMERAL, REQUIRED, Declared, Inner, Key
 from faying.study.keys.tables import STUDY
-from faying.study.keys.uncertain import DISTRIBUTIONS, OF_MATERIAL, OWN, SHORT
-from faying.study.keys.varied import MODEL
+from faying.study.keys.uncertain import DISTRIBUTIONS, OWN
+from faying.study.keys.varied import MODEL, rooms, short_keys, varied
 
 Shape = Literal["text", "choice", "truth", "number", "face", "list", "some", "any"]
 # tables that stand in the form before the text has them, and the keys of a table that are shown at once
@@ -214,11 +214,15 @@ class _Maker:
         return FormAddition(path=path, label=label, says=what.says, named=True, is_key=is_key, suggestions=suggestions)
 
     def _scatter(self, path: KeyPath) -> FormAddition:
-        parts, joints, bolts = self.data.get("part"), self.data.get("joint"), self.data.get("bolt")
-        own = [f"part.{name}.stiffness" for name in (parts if isinstance(parts, Mapping) else ())]
-        for room, key, table in (("joint", "friction", joints), ("bolt", "factor", bolts)):
-            own += [f"{room}.{one['name']}.{key}" for one in _tables(table) if isinstance(one.get("name"), str)]
-        names = [*SHORT, *OF_MATERIAL, *OWN, "bolt.factor", *own]
+        names = [*short_keys(), *OWN]
+        for room, found in rooms().items():
+            table = self.data.get(room)
+            owners = [one["name"] for one in _tables(table) if isinstance(one.get("name"), str)]
+            if found.named == "always" and isinstance(table, Mapping):
+                owners = list(table)
+            heads = [room] * (found.named == "optional") + [f"{room}.{owner}" for owner in owners]
+            numbers = (varied(f"{head}.{name}") for head in heads for name in found.numbers)
+            names += [number.key for number in numbers if number is not None and number.scatters]
         return FormAddition(
             path=path, label="uncertain.NAME", says=FREE.says, named=True, is_key=True, suggestions=names
         )

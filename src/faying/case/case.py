@@ -181,10 +181,7 @@ def surfaces_of(study: Study, read: Read | None = None) -> tuple[Surface, ...]:
 
 def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Material, other: Material) -> JointLaw:
     """Lay the law on a joint between the rough face's material and the other one, for run, sweep and attach alike."""
-    choice = law.make(surface, rough, other)
-    return JointLaw(
-        model=choice.law, tangential=joint.tangential, nu=rough.nu, reason=choice.reason, mates=choice.mates
-    )
+    return joint.laid(law.make(surface, rough, other), rough.nu)
 
 
 def part_of(study: Study, face: str) -> str | None:

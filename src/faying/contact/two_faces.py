@@ -27,7 +27,7 @@ GIVEN = "as given"
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True)
 class RoughPair:
     """Two faces as one rough surface. What nobody asks for is not computed; what was asked for is not computed again.
 

@@ -5,10 +5,8 @@ from typing import Any, get_args
 
 from faying.errors import ReadError
 from faying.identify.identification import Identification
-from faying.identify.identification_record import OWN
 from faying.identify.prediction import Prediction
 from faying.misuse import checked_call
-from faying.netcdf import Group
 from faying.result.backbone import Backbone
 from faying.result.fields import RECORD, read_tree
 from faying.result.load_cases import LoadCases
@@ -32,18 +30,10 @@ def load(path: str | Path) -> Saved:
         ReadError: The file is missing or damaged, is none of these, or lacks a variable, which is named.
     """
     tree = read_tree(path)
-    name = tree.attributes.get(RECORD) or _earlier(tree)
+    name = tree.attributes.get(RECORD)
     for kind in KINDS:
         if name == kind.KIND:
             found: Saved = kind.of_file(path, tree)
             return found
     known = ", ".join(kind.KIND for kind in KINDS)
     raise ReadError(f"{path} has nothing that faying.load reads, which is {known}; a sweep is read by xarray")
-
-
-def _earlier(tree: Group) -> str:
-    """What a file of an earlier version holds, which does not say it itself."""
-    if OWN in tree.groups:
-        return Identification.KIND
-    marks = {"bonded": Result.KIND, "modal_amplitude": Backbone.KIND, "values": Prediction.KIND}
-    return next((kind for variable, kind in marks.items() if variable in tree.variables), "")

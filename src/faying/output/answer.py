@@ -19,17 +19,18 @@ def answer(result: Result) -> Rows:
     """One row per mode at the greatest preload: its motion, frequency with interval, change with preload, damping."""
     if result.interval_low is None or result.interval_high is None:
         return []
-    several, levels = len(result.loads) > 1, result.levels
+    several, damped = len(result.loads) > 1, result.at_levels
     heads = ["mode", "moves most", f"{load_text(result.loads[-1])} [Hz]", "5 to 95 %"]
     heads += ["Hz/kN"] * several
-    heads += [] if levels is None else [f"damping, {levels[len(levels) // 2]:g} m/s2 [%]"]
+    middle = 0 if damped is None else len(damped.levels) // 2
+    heads += [] if damped is None else [f"damping, {damped.levels[middle]:g} m/s2 [%]"]
     rows: Rows = [heads]
     slopes = 1e3 * preload_slope(result.frequencies, result.loads) if several else np.zeros(len(result.bonded))
     for j in range(len(result.bonded)):
         cells = [str(j + 1), moves(result, j), f"{result.frequencies[-1, j]:.2f}"]
         cells.append(_interval(float(result.interval_low[-1, j]), float(result.interval_high[-1, j])))
         cells += [f"{slopes[j]:+.0f}" if abs(slopes[j]) >= 100 else f"{slopes[j]:+.2g}"] * several
-        cells += _damping(result, j)
+        cells += [] if damped is None else [damping_at(damped, middle, j)]
         rows.append(cells)
     return rows
 
@@ -63,12 +64,6 @@ def _interval(low: float, high: float) -> str:
     """Both ends to a tenth of their distance or so."""
     digits = max(0, 1 - int(np.floor(np.log10(max(high - low, 1e-9)))))
     return f"{low:.{digits}f} .. {high:.{digits}f}"
-
-
-def _damping(result: Result, mode: int) -> list[str]:
-    if result.levels is None or result.level_low is None or result.level_high is None or result.level_damping is None:
-        return []
-    return [damping_at(result, len(result.levels) // 2, mode)]
 
 
 def moves(result: Result, mode: int) -> str:

@@ -1,6 +1,6 @@
 """One self-contained HTML file from a result: tables, figures, flags, sources."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -20,6 +20,7 @@ from faying.result import Result, interval_figure, level_figure
 from faying.result import backbone_figure as backbone
 from faying.result import figure as structure
 from faying.result import response_figure as response
+from faying.result.fields import declared
 from faying.style import WIDE, drawing, new_figure, uncollected
 
 
@@ -51,19 +52,22 @@ def anchor(title: str) -> str:
 def _chapters(result: Result, pictures: dict[str, str]) -> list[tuple[str, list[str]]]:
     """The chapters that a result has, in their order, each with its parts."""
     every = sections(result)
-    unknown = {section.name for section in every} - {"answer"} - {name for one in CHAPTERS.values() for name in one}
-    assert not unknown, unknown
-    out = {"Structure": _view(result, pictures)}
+    out = {}
     for title, names in CHAPTERS.items():
-        parts = out.get(title, [])
-        for name in names:
-            if name in CURVES:
-                parts += CURVES[name](result, pictures)
-            elif name.startswith(FIGURE):
-                parts += _figure(name.removeprefix(FIGURE), pictures)
+        parts = _view(result) if title == "Structure" else []
+        for one in names:
+            if isinstance(one, ReportFigure):
+                parts += _figure(one.name, pictures, one.mark)
+            elif one in CURVES:
+                parts += CURVES[one](result)
             else:
-                parts += _tables([one for one in every if one.name == name], result, pictures)
+                parts += _tables([section for section in every if section.name == one], result, pictures)
         out[title] = parts
+    placed = {"answer", *(one for names in CHAPTERS.values() for one in names)}
+    for section in every:  # the others have a place, too
+        if section.name not in placed:
+            chapter = section.chapter or "More"
+            out[chapter] = [*out.get(chapter, []), *_table(section), *_figure(section.name, pictures)]
     assumed = [note for note in grouped(result.notes) if note.severity == "remark"]
     out["Assumptions"] = [_list([note.text for note in assumed])] if assumed else []
     out["Notes"] = _notes(result)
@@ -80,7 +84,7 @@ def _answer(result: Result, pictures: dict[str, str]) -> list[str]:
     first = [section for section in sections(result) if section.name == "answer"]
     out = [f'<h2>Answer</h2><p class="lead">{escape(answer.lead(result))}</p>']
     tables = [page.table(section.rows, section.name) for section in first]
-    out += ['<div class="pair">', *tables, *_figure("intervals", pictures), "</div>"] if first else []
+    out += ['<div class="pair">', *tables, *_figure(INTERVALS.name, pictures), "</div>"] if first else []
     return out + [f"<p>{page.typeset(escape(section.below))}</p>" for section in first] + _first_notes(result)
 
 
@@ -96,17 +100,16 @@ def _figure(name: str, pictures: dict[str, str], kind: str = "") -> list[str]:
     if name not in pictures:
         return []
     given = f' class="{kind}"' if kind else ""
-    return [f"<figure{given}>{pictures[name]}<figcaption>{FIGURES[name].caption}</figcaption></figure>"]
+    return [f"<figure{given}>{pictures[name]}<figcaption>{caption(name)}</figcaption></figure>"]
 
 
-def _view(result: Result, pictures: dict[str, str]) -> list[str]:
-    """The structure to look at, its data, and the pictures that stand in for it on paper and without scripts."""
+def _view(result: Result) -> list[str]:
+    """The structure to look at, and its data; pictures stand in for it on paper and without scripts."""
     why = "Without JavaScript the structure does not move; the pictures below replace it."
     return [
         f'<p id="why" class="soft"><noscript>{why}</noscript></p><div id="stage"></div>',
         pages.data(to_text(of_result(result)), "scene"),
         f'<p class="soft">{MAPS}</p>',
-        *(part for name in MOVING for part in _figure(name, pictures, "static")),
     ]
 
 
@@ -147,21 +150,19 @@ def _tables(every: Sequence[ReportSection], result: Result, pictures: dict[str, 
     return out
 
 
-def _response(result: Result, pictures: dict[str, str]) -> list[str]:
-    """Frequency responses as curves that zoom, and as the picture that stands in for them."""
+def _response(result: Result) -> list[str]:
+    """Frequency responses as curves that zoom."""
     if result.response is None:
         return []
-    curves = page.curves("response", response_curves(result))
-    return ["<h3>Frequency response</h3>", curves, *_figure("response", pictures, "of-response")]
+    return ["<h3>Frequency response</h3>", page.curves("response", response_curves(result))]
 
 
-def _backbones(result: Result, pictures: dict[str, str]) -> list[str]:
-    """Curves over amplitude that zoom, and the picture that stands in for them."""
+def _backbones(result: Result) -> list[str]:
+    """Curves over amplitude that zoom."""
     if not result.backbones:
         return []
     head = f"<h3>Frequency and damping of mode {result.backbones[0].mode} over amplitude</h3>"
-    curves = page.curves("backbones", backbone_curves(result.backbones))
-    return [head, curves, *_figure("backbones", pictures, "of-backbones")]
+    return [head, page.curves("backbones", backbone_curves(result.backbones))]
 
 
 def _provenance(result: Result) -> list[str]:
@@ -187,18 +188,6 @@ def _contact(result: Result) -> list[str]:
     return [f"<h3>Contact of {escape(', '.join(names))}</h3>{text}" for text, names in shared.items()]
 
 
-FIGURE = "figure of "  # stands before the name of a figure in a chapter
-# chapter -> what stands in it, in order: names of tables, of figures, of curves that zoom
-CHAPTERS = {
-    "Structure": ("parts", "bolts", "bolting", "dowels"),
-    "Joints": ("joints", "figure of pressure", "figure of slip", "figure of law", "surfaces", "conductance"),
-    "Modes": (
-        *("modes", "figure of frequencies", "damping", "figure of damping", "laws", "beyond", "figure of mac"),
-        *("response", "backbones", "backbone", "backbone measured", "backbone bounds", "modal forces"),
-    ),
-    "Intervals": ("shares", "narrowing", "figure of narrowing", "ranges", "waves"),
-    "Test": ("score", "comparison", "figure of comparison", "hammer"),
-}
 CURVES = {"response": _response, "backbones": _backbones}
 MAPS = (
     "Maps on joints: the value at a corner is the mean of the values at the points around it, weighted by area; peaks "
@@ -209,18 +198,19 @@ SHAPES = (
     "Mode shapes at the greatest preload, drawn at one scale; colour is the motion over the greatest of the mode. "
     "Names: what most of the motion is, in slices across the longest side, or the part that moves most and its axis."
 )
-MOVING = ("modes",)  # figures that the view stands for on a screen
 RESULT = "result.nc"  # is kept where the rest does not fit
 TEST = "test_"  # the figures of the hammer test begin with it
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReportFigure:
-    """A figure of the report: what draws it, its caption, and which results have it."""
+    """A figure of the report: what draws it, its caption, which results have it, and what the page marks it as."""
 
+    name: str
     draw: Callable[[Result], Any]
     caption: str
     applies: Callable[[Result], bool] = lambda result: True
+    mark: str = ""
 
 
 def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
@@ -232,79 +222,131 @@ def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
     return drawing(drawn)
 
 
-FIGURES = {
-    "intervals": ReportFigure(
-        draw=interval_figure.intervals,
-        caption="Left: 5 to 95 % of each frequency at the greatest preload about the value as computed, and the test "
-        "where there is one. Right: what makes the interval, in shares of its variance.",
-        applies=lambda result: result.interval is not None,
+INTERVALS = ReportFigure(
+    name="intervals",
+    draw=interval_figure.intervals,
+    caption="Left: 5 to 95 % of each frequency at the greatest preload about the value as computed, and the test "
+    "where there is one. Right: what makes the interval, in shares of its variance.",
+    applies=lambda result: result.interval is not None,
+)
+# chapter -> what stands in it, in order: names of tables and of curves that zoom, and the figures; the quantities that
+# declare a chapter come after them
+CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
+    "Structure": (
+        ReportFigure(name="modes", mark="static", draw=structure.mode_shapes, caption=SHAPES),
+        "parts",
+        "bolts",
+        "bolting",
     ),
-    "narrowing": ReportFigure(
-        draw=narrowing.narrowing,
-        caption="How much narrower the intervals would get if one thing were known better: bar, the median mode; dots, "
-        "each mode.",
-        applies=lambda result: result.interval is not None,
+    "Joints": (
+        "joints",
+        ReportFigure(
+            name="pressure",
+            draw=structure.pressures,
+            caption="Pressure where the faces of each joint touch, at the least and the greatest preload. Grey: open; "
+            "the line is the edge of contact.",
+        ),
+        ReportFigure(
+            name="slip",
+            draw=structure.slips,
+            caption="Tangential displacement of the second face against the first while the bolts are tightened. Grey: "
+            "open.",
+            applies=lambda result: result.slip is not None and float(result.slip.max()) > 0,
+        ),
+        ReportFigure(
+            name="law",
+            draw=_on_axes(structure.law_curves),
+            caption="Stiffness per area over the pressures that the joints reach at the greatest preload.",
+        ),
+        "surfaces",
+        "conductance",
     ),
-    "frequencies": ReportFigure(
-        draw=structure.frequencies,
-        caption="Frequency of each mode against preload. Band: 5 to 95 % of all that is not known, where the study "
-        "asks for intervals, else the range that the law states. Dotted, where it is near: faces bonded.",
+    "Modes": (
+        "modes",
+        ReportFigure(
+            name="frequencies",
+            draw=structure.frequencies,
+            caption="Frequency of each mode against preload. Band: 5 to 95 % of all that is not known, where the study "
+            "asks for intervals, else the range that the law states. Dotted, where it is near: faces bonded.",
+        ),
+        "damping",
+        ReportFigure(
+            name="damping",
+            draw=level_figure.damping_levels,
+            caption="Damping ratio of each mode at levels of acceleration, at the greatest preload: slip in the joints "
+            "and the damping at rest.",
+            applies=lambda result: result.at_levels is not None,
+        ),
+        "laws",
+        "beyond",
+        ReportFigure(
+            name="mac",
+            draw=response.macs,
+            caption="MAC of the modes at the first preload (rows) with those at another: modes that change "
+            "places or mix.",
+            applies=lambda result: len(result.loads) > 1,
+        ),
+        "response",
+        ReportFigure(
+            name="response",
+            mark="of-response",
+            draw=response.responses,
+            caption="Accelerance at every preload, at the points and along the directions of the study.",
+            applies=lambda result: result.response is not None,
+        ),
+        "backbones",
+        ReportFigure(
+            name="backbones",
+            mark="of-backbones",
+            draw=lambda result: backbone.figure(result.backbones),
+            caption="Frequency and damping ratio against amplitude, with the static cycle as circles.",
+            applies=lambda result: bool(result.backbones),
+        ),
+        "backbone",
+        "backbone measured",
+        "backbone bounds",
+        "modal forces",
     ),
-    "comparison": ReportFigure(
-        draw=_on_axes(structure.comparison),
-        caption="Difference of computed and published frequencies from the test. Bars: 5 to 95 % of the computed.",
-        applies=lambda result: result.comparison is not None,
+    "Intervals": (
+        "shares",
+        "narrowing",
+        ReportFigure(
+            name="narrowing",
+            draw=narrowing.narrowing,
+            caption="How much narrower the intervals would get if one thing were known better: bar, the median mode; "
+            "dots, each mode.",
+            applies=lambda result: result.interval is not None,
+        ),
+        "ranges",
+        "waves",
     ),
-    "damping": ReportFigure(
-        draw=level_figure.damping_levels,
-        caption="Damping ratio of each mode at levels of acceleration, at the greatest preload: slip in the joints and "
-        "the damping at rest.",
-        applies=lambda result: result.levels is not None and result.level_damping is not None,
-    ),
-    "pressure": ReportFigure(
-        draw=structure.pressures,
-        caption="Pressure where the faces of each joint touch, at the least and the greatest preload. Grey: open; the "
-        "line is the edge of contact.",
-    ),
-    "slip": ReportFigure(
-        draw=structure.slips,
-        caption="Tangential displacement of the second face against the first while the bolts are tightened. Grey: "
-        "open.",
-        applies=lambda result: result.slip is not None and float(result.slip.max()) > 0,
-    ),
-    "law": ReportFigure(
-        draw=_on_axes(structure.law_curves),
-        caption="Stiffness per area over the pressures that the joints reach at the greatest preload.",
-    ),
-    "modes": ReportFigure(draw=structure.mode_shapes, caption=SHAPES),
-    "backbones": ReportFigure(
-        draw=lambda result: backbone.figure(result.backbones),
-        caption="Frequency and damping ratio against amplitude, with the static cycle as circles.",
-        applies=lambda result: bool(result.backbones),
-    ),
-    "mac": ReportFigure(
-        draw=response.macs,
-        caption="MAC of the modes at the first preload (rows) with those at another: modes that change places or mix.",
-        applies=lambda result: len(result.loads) > 1,
-    ),
-    "response": ReportFigure(
-        draw=response.responses,
-        caption="Accelerance at every preload, at the points and along the directions of the study.",
-        applies=lambda result: result.response is not None,
+    "Test": (
+        "score",
+        "comparison",
+        ReportFigure(
+            name="comparison",
+            draw=_on_axes(structure.comparison),
+            caption="Difference of computed and published frequencies from the test. Bars: 5 to 95 % of the computed.",
+            applies=lambda result: result.comparison is not None,
+        ),
+        "hammer",
     ),
 }
+FIGURES = {one.name: one for one in (INTERVALS, *sum(CHAPTERS.values(), ())) if isinstance(one, ReportFigure)}
 
 
 def caption(name: str) -> str:
     """What a figure shows, in words, for those who do not see it."""
     if name.startswith(TEST):
         return report_measured.CAPTIONS[name.removeprefix(TEST)]
-    return FIGURES[name].caption
+    return FIGURES[name].caption if name in FIGURES else declared(Result)[name].shown.caption
 
 
 def figures(result: Result) -> dict[str, Any]:
     """Return every figure of the report by name."""
     out = {name: figure.draw(result) for name, figure in FIGURES.items() if figure.applies(result)}
+    if len(result.loads) > 1:
+        out |= {name: structure.quantity(result, name) for name, one in result.shown().items() if one.shown.caption}
     if result.hammer is not None:
         out |= {TEST + name: figure for name, figure in report_measured.figures(result.hammer).items()}
     return out

@@ -20,6 +20,7 @@ class ReportSection:
         line: what stands above it in a terminal; the title in small letters where left out.
         below: what the report says below it.
         keys: how many columns name a row; they are repeated where a table is split.
+        chapter: of the report; "" where the list of its chapters names the table.
     """
 
     name: str
@@ -28,6 +29,7 @@ class ReportSection:
     line: str = ""
     below: str = ""
     keys: int = 1
+    chapter: str = ""
 
     @property
     def above(self) -> str:
@@ -38,7 +40,25 @@ class ReportSection:
 def sections(result: Result) -> list[ReportSection]:
     """Return the tables that a result has."""
     every = (*_answer(result), *_modes(result), *_joints(result), *_backbones(result), *_tests(result))
-    return [section for section in every if section.rows]
+    there = {section.chapter for section in every}
+    others = dict.fromkeys(meta.shown.chapter for meta in result.shown().values() if meta.shown.chapter not in there)
+    more = [section for chapter in others for section in _shown(result, chapter)]
+    return [section for section in (*every, *more) if section.rows]
+
+
+def _shown(result: Result, chapter: str) -> list[ReportSection]:
+    """The tables of the quantities that declare this chapter."""
+    return [
+        ReportSection(
+            name=name,
+            rows=table.of_quantity(result, name),
+            title=meta.shown.title,
+            line=meta.shown.line,
+            below=meta.shown.below,
+            chapter=chapter,
+        )
+        for name, meta in result.shown(chapter).items()
+    ]
 
 
 def _last(result: Result) -> str:
@@ -141,14 +161,7 @@ def _joints(result: Result) -> tuple[ReportSection, ...]:
             line=f"bolts, tightened in the order {order}" if order else "bolts, all pulled at once",
             below=f"Tightened in the order {order}." if order else "All pulled at once.",
         ),
-        ReportSection(
-            name="dowels",
-            rows=table.dowels(result),
-            keys=1,
-            title="Dowels",
-            line="shear force of each dowel when all bolts are tight",
-            below="The greatest shear force of each pin between two parts, when all bolts are tight.",
-        ),
+        *_shown(result, "Structure"),
         ReportSection(
             name="bolting",
             rows=table.bolting(result),

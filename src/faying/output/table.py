@@ -12,7 +12,7 @@ from faying.output.terminal import text as text
 from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.difference import of_joint
-from faying.result.run_record import preload_slope
+from faying.result.run_record import DampedLevels, preload_slope
 from faying.text import in_columns
 from faying.typing import Array
 from faying.units import load_text, show
@@ -58,23 +58,19 @@ def ranges(result: Result) -> Rows:
 
 def damping(result: Result) -> Rows:
     """One row per mode: damping at each level at the greatest preload, with both ends; empty where there is none."""
-    if result.levels is None or result.level_damping is None or result.level_low is None or result.level_high is None:
+    found = result.at_levels
+    if found is None:
         return []
-    assert result.level_frequencies is not None
-    heads = [*(f"{level:g} m/s2 [%]" for level in result.levels), "change of f [%]"]
-    change = 100 * (result.level_frequencies[-1, -1] / result.frequencies[-1] - 1)
+    heads = [*(f"{level:g} m/s2 [%]" for level in found.levels), "change of f [%]"]
+    change = 100 * (found.frequencies[-1, -1] / result.frequencies[-1] - 1)
     words = [f"{one:+.3f}" if abs(one) >= MIN_CHANGE else "0" for one in change]
-    levels = range(len(result.levels))
-    return by_mode(heads, ([*(damping_at(result, k, j) for k in levels), word] for j, word in enumerate(words)))
+    levels = range(len(found.levels))
+    return by_mode(heads, ([*(damping_at(found, k, j) for k in levels), word] for j, word in enumerate(words)))
 
 
-def damping_at(result: Result, level: int, mode: int) -> str:
+def damping_at(found: DampedLevels, level: int, mode: int) -> str:
     """Low, median and high damping ratio [%] of a mode at one level, at the greatest preload."""
-    assert result.level_low is not None
-    assert result.level_damping is not None
-    assert result.level_high is not None
-    ends = (result.level_low, result.level_damping, result.level_high)
-    return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in ends)
+    return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in (found.low, found.damping, found.high))
 
 
 def _five(value: float) -> str:
@@ -227,7 +223,7 @@ def joints(result: Result) -> Rows:
 
 
 def parts(result: Result) -> Rows:
-    """One row per part with its mass, then point masses and the sum; empty in results of earlier versions."""
+    """One row per part with its mass, then point masses and the sum; empty where no mass is known."""
     if result.part_masses is None:
         return []
     rows = [(name, float(mass)) for name, mass in zip(result.parts, result.part_masses, strict=True)]
@@ -246,13 +242,15 @@ def bolts(result: Result) -> Rows:
     return rows
 
 
-def dowels(result: Result) -> Rows:
-    """One row per preload: the shear force in each dowel when all bolts are tight; empty without dowels."""
-    if result.dowel_shear is None:
-        return []
-    rows: Rows = [["preload", *(f"{name} [N]" for name in result.dowels)]]
-    for load, forces in zip(result.loads, result.dowel_shear, strict=True):
-        rows.append([load_text(load), *(f"{force:.4g}" for force in forces)])
+def of_quantity(result: Result, name: str) -> Rows:
+    """A quantity of modes: one row per mode. Of bolts, joints and the like: one row per preload, a column for each."""
+    meta, values = result.shown()[name], np.asarray(getattr(result, name))
+    loads = [load_text(load) for load in result.loads]
+    if meta.dims == ("load", "mode"):
+        cells = ([_or_dash(v, meta.shown.form) for v in row] for row in values.T)
+        return by_mode((f"{load} [{meta.unit_text}]" for load in loads), cells)
+    rows: Rows = [["preload", *(f"{label} [{meta.unit_text}]" for label in result.labels()[meta.dims[1]])]]
+    rows += [[load, *(_or_dash(v, meta.shown.form) for v in row)] for load, row in zip(loads, values, strict=True)]
     return rows
 
 

@@ -29,11 +29,32 @@ PRELOAD = "preload"  # numbers that belong to the labels of loads
 
 
 @dataclass(frozen=True, kw_only=True)
-class Declared:
+class ShownAs:
+    """Where a quantity of a result is shown.
+
+    Args:
+        column: Its head in modes.csv, for a quantity of modes; "" for none.
+        chapter: Of the report, in which its table and its figure stand; "" for neither. A terminal has the table.
+        title, line, below: Heading of the table, the line above it in a terminal, what the report says below it.
+        form: Of a number in the table.
+        caption: Of the figure against preload; "" for none.
+    """
+
+    column: str = ""
+    chapter: str = ""
+    title: str = ""
+    line: str = ""
+    below: str = ""
+    form: str = ".4g"
+    caption: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordedQuantity:
     """What a field that holds an array declares: name in the file, dimensions, SI unit, long name, kind of number.
 
-    gaps: whether NaN may stand in it, for what was not predicted; group: of the file, its root where empty;
-    before: name in the root of files of earlier versions, where it was not that of the field.
+    gaps: whether NaN may stand in it, for what was not predicted; group: of the file, its root where empty; shown:
+    where tables and figures have it.
     """
 
     name: str
@@ -43,7 +64,12 @@ class Declared:
     dtype: str
     gaps: bool = False
     group: str = ""
-    before: str = ""
+    shown: ShownAs = field(default_factory=ShownAs)
+
+    @property
+    def unit_text(self) -> str:
+        """The unit as heads of columns have it."""
+        return "-" if self.unit == "1" else self.unit
 
 
 def variable(
@@ -54,16 +80,17 @@ def variable(
     *,
     dtype: str = "f8",
     gaps: bool = False,
-    before: str = "",
+    shown: ShownAs | str = "",
     default: Any = MISSING,
 ) -> Any:
     """Declare a field of a dataclass as an array with named dimensions; writer, reader, JSON and tables follow.
 
     dims: names of the dimensions, with blanks between; path: group and name in the file, "modes/frequency"; the name is
-    that of the field in "modes/", and the group is the root without a stroke; the rest as in `Declared`.
+    that of the field in "modes/", and the group is the root without a stroke; shown: a text is the column of `ShownAs`;
+    the rest as in `RecordedQuantity`.
     """
     group, _, name = path.rpartition("/")
-    declared = Declared(
+    declared = RecordedQuantity(
         name=name,
         dims=tuple(dims.split()),
         unit=unit,
@@ -71,14 +98,14 @@ def variable(
         dtype=dtype,
         gaps=gaps,
         group=group,
-        before=before,
+        shown=ShownAs(column=shown) if isinstance(shown, str) else shown,
     )
     return field(metadata={KEY: declared}, **({} if default is MISSING else {"default": default}))
 
 
-def optional(dims: str, unit: str, long_name: str, path: str = "", *, dtype: str = "f8", gaps: bool = False) -> Any:
-    """Declare a `variable` that may be None, as where a study asks for less or a file is of an earlier version."""
-    return variable(dims, unit, long_name, path, dtype=dtype, gaps=gaps, default=None)
+def optional(dims: str, unit: str, long_name: str, path: str = "", **more: Any) -> Any:
+    """Declare a `variable` that may be None, as where a study asks for less."""
+    return variable(dims, unit, long_name, path, default=None, **more)
 
 
 class Recorded(Summary):
@@ -212,7 +239,7 @@ class Recorded(Summary):
         return table_of(found[group], tree.variables)
 
 
-def array_of(name: str, given: Any, meta: Declared) -> Any:
+def array_of(name: str, given: Any, meta: RecordedQuantity) -> Any:
     """What a field holds as an array. Raises InputError where it is none, or has other dimensions."""
     try:
         value = np.asarray(given, dtype=meta.dtype)
@@ -223,7 +250,7 @@ def array_of(name: str, given: Any, meta: Declared) -> Any:
     return value
 
 
-def declared(kind: Any) -> dict[str, Declared]:
+def declared(kind: Any) -> dict[str, RecordedQuantity]:
     """What the array fields of a dataclass declare, by the name of the field."""
     return {f.name: f.metadata[KEY] for f in fields(kind) if KEY in f.metadata}
 
@@ -257,7 +284,7 @@ def to_group(value: Any) -> Group:
     groups: dict[str, Group] = {}
     for f in fields(value):
         item = getattr(value, f.name)
-        meta: Declared | None = f.metadata.get(KEY)
+        meta: RecordedQuantity | None = f.metadata.get(KEY)
         if item is None:
             continue
         if meta is not None:
@@ -370,7 +397,7 @@ def from_group(kind: type[Kind], group: Group) -> Kind:
     given: dict[str, Any] = {}
     hints = get_type_hints(kind)
     for f in fields(cast(Any, kind)):
-        meta: Declared | None = f.metadata.get(KEY)
+        meta: RecordedQuantity | None = f.metadata.get(KEY)
         name, hint = f.name, _without_none(hints[f.name])
         found = None if meta is None else _variable_of(group, f.name, meta)
         if meta is not None and found is not None:
@@ -402,17 +429,10 @@ def from_group(kind: type[Kind], group: Group) -> Kind:
     return kind(**given)
 
 
-def _variable_of(group: Group, field_name: str, meta: Declared) -> Variable | None:
-    """The variable of a field, in its group or, as in files of earlier versions, in the root; None where absent."""
+def _variable_of(group: Group, field_name: str, meta: RecordedQuantity) -> Variable | None:
+    """The variable of a field; None where the file has none."""
     inner = group.groups.get(meta.group) if meta.group else group
-    name = meta.name or field_name
-    if inner is not None and name in inner.variables:
-        return inner.variables[name]
-    for earlier in (field_name, meta.before):
-        found = group.variables.get(earlier)
-        if found is not None and len(found.dims) == len(meta.dims) and found.values.dtype.kind != "O":
-            return found
-    return None
+    return None if inner is None else inner.variables.get(meta.name or field_name)
 
 
 def _as_hinted(values: Any, hint: Any) -> Any:

@@ -27,6 +27,7 @@ from faying.style import (
     shared_legend,
 )
 from faying.text import listed
+from faying.typeset import typeset, unit
 from faying.units import load_text
 
 if TYPE_CHECKING:
@@ -168,6 +169,24 @@ def _against_preload(ax: Any, result: RunRecord, mode: int) -> None:
     ax.locator_params(axis="y", nbins=4)
 
 
+@drawing
+def quantity(result: RunRecord, name: str) -> Any:
+    """Return the figure of a quantity that has a value for each preload: a line for each mode, joint, bolt or the like.
+
+    name: of the field, whose declaration says what it is.
+    """
+    meta, values = result.shown()[name], np.asarray(getattr(result, name))
+    fig = new_figure(WIDE, 3.2)
+    ax = fig.add_subplot()
+    for k, label in enumerate(result.labels()[meta.dims[1]]):
+        ax.plot(result.loads * 1e-3, values[:, k], "o-", color=colour(k), ms=3, label=plain(str(label)))
+    unit_text = f" [{unit(meta.unit)}]" if meta.unit != "1" else ""
+    ax.set(xlabel="preload of each bolt [kN]", ylabel=f"{typeset(meta.shown.title)}{unit_text}")
+    ax.grid(alpha=0.3)
+    legend_above(ax, 4)
+    return fig
+
+
 def band(ax: Any, x: Any, low: Any, high: Any, *, label: str) -> None:
     """The band between two values at each place (x,), as a bar where there is one place."""
     if len(x) > 1:
@@ -254,9 +273,10 @@ def mode_shapes(result: RunRecord, load: int = -1) -> Any:
 def shape_words(result: RunRecord, mode: int, load: int = -1) -> str:
     """Return what stands above a mode shape: frequency, name and damping, one a line."""
     lines = [f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", plain(shape_name(result, mode, load))]
-    if result.levels is not None and result.level_damping is not None:
-        k = len(result.levels) // 2
-        lines.append(rf"$\zeta$ {100 * result.level_damping[load, k, mode]:.2g} % at {result.levels[k]:g} m/s²")
+    found = result.at_levels
+    if found is not None:
+        k = len(found.levels) // 2
+        lines.append(rf"$\zeta$ {100 * found.damping[load, k, mode]:.2g} % at {found.levels[k]:g} m/s²")
     elif np.isfinite(result.loss_factors[load, mode]):
         lines.append(rf"$\eta$ {100 * result.loss_factors[load, mode]:.2g} %")
     return "\n".join(filter(None, lines))

@@ -7,6 +7,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.result.figure import band, mode_panels
 from faying.result.result import Result
+from faying.result.run_record import DampedLevels
 from faying.style import COLOURS, colour, drawing, plain_numbers, shared_legend
 from faying.units import load_text
 
@@ -17,9 +18,8 @@ def damping_levels(result: Result, load: int = -1) -> Any:
 
     Raises InputError for a result without levels.
     """
-    if result.levels is None or result.level_damping is None:
-        raise InputError("the result has no damping at levels; run it with [modes] levels")
-    fig, axes = mode_panels(result.level_damping.shape[2], sharex=True, sharey=True)
+    found = _at_levels(result)
+    fig, axes = mode_panels(found.damping.shape[2], sharex=True, sharey=True)
     for mode, ax in enumerate(axes):
         damping_of(ax, result, mode, load)
         ax.set_title(f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", pad=3)
@@ -32,22 +32,24 @@ def damping_levels(result: Result, load: int = -1) -> Any:
 @drawing
 def damping_of(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
     """Draw the damping ratio [%] of one mode over its level, with its band and the part that is slip."""
-    assert result.levels is not None
-    assert result.level_damping is not None
-    a = result.levels
-    if result.level_low is not None and result.level_high is not None:
-        low, high = (100 * one[load, :, mode] for one in (result.level_low, result.level_high))
-        band(ax, a, low, high, label="low to high")
-    ax.plot(a, 100 * result.level_damping[load, :, mode], "o-", color=COLOURS[0], ms=3, label="damping")
-    if result.level_slip is not None:
-        slip = 100 * result.level_slip[load, :, mode]
-        if np.nanmax(slip) > 30 * float(np.nanmin(result.level_damping[load])):  # else slip says nothing
-            ax.plot(a, np.where(slip > 0, slip, np.nan), "--", color=colour(1), lw=1.0, label="of it by slip")
+    found = _at_levels(result)
+    a = found.levels
+    low, high = (100 * one[load, :, mode] for one in (found.low, found.high))
+    band(ax, a, low, high, label="low to high")
+    ax.plot(a, 100 * found.damping[load, :, mode], "o-", color=COLOURS[0], ms=3, label="damping")
+    slip = 100 * found.slip[load, :, mode]
+    if np.nanmax(slip) > 30 * float(np.nanmin(found.damping[load])):  # else slip says nothing
+        ax.plot(a, np.where(slip > 0, slip, np.nan), "--", color=colour(1), lw=1.0, label="of it by slip")
     ax.set(xscale="log", yscale="log")
-    least = np.nanmin(result.level_damping if result.level_low is None else result.level_low)
-    ax.set_ylim(bottom=30 * float(least))
+    ax.set_ylim(bottom=30 * float(np.nanmin(found.low)))
     ax.set_xlim(a[0] / 1.4, a[-1] * 1.4)
     plain_numbers(ax.xaxis)
     plain_numbers(ax.yaxis)
     ax.grid(alpha=0.3)
     return ax
+
+
+def _at_levels(result: Result) -> DampedLevels:
+    if result.at_levels is None:
+        raise InputError("the result has no damping at levels; run it with [modes] levels")
+    return result.at_levels

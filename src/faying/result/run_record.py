@@ -1,6 +1,6 @@
 """What a run has found: frozen arrays with names, dimensions and units, and the facts that they belong to."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,7 +16,7 @@ from faying.misuse import checked_call
 from faying.notes import Note, grouped
 from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
-from faying.result.fields import Recorded, in_units, load_texts, optional, variable
+from faying.result.fields import Recorded, RecordedQuantity, ShownAs, declared, in_units, load_texts, optional, variable
 from faying.result.interval import Interval
 from faying.result.provenance import Provenance
 from faying.text import csv_text, listed, notes_row
@@ -85,6 +85,26 @@ class Receptance:
         return _pairs(self.output_points, self.output_directions)
 
 
+@dataclass(frozen=True, kw_only=True)
+class DampedLevels:
+    """What a result has at levels of acceleration.
+
+    Args:
+        levels: Peak acceleration of the point that moves most [m/s2] (level,).
+        frequencies: [Hz] (load, level, mode).
+        damping, low, high: Damping ratio and its ends [-] (load, level, mode).
+        slip, error: Part of it by slip, and error of that part [-] (load, level, mode).
+    """
+
+    levels: Array
+    frequencies: Array
+    damping: Array
+    low: Array
+    high: Array
+    slip: Array
+    error: Array
+
+
 def _pairs(points: Array, directions: Array) -> tuple[tuple[Point, Point], ...]:
     return tuple((tuple(p), tuple(d)) for p, d in zip(points.tolist(), directions.tolist(), strict=True))
 
@@ -97,16 +117,21 @@ class RunRecord(Recorded):
     COMMAND: ClassVar[str] = "faying run STUDY.toml"
 
     title: str
-    loads: Array = variable("load", "N", "preload of the first bolt", "preload", before="load")
-    frequencies: Array = variable("load mode", "Hz", "frequency", "modes/frequency")
+    loads: Array = variable("load", "N", "preload of the first bolt", "preload")
+    frequencies: Array = variable("load mode", "Hz", "frequency", "modes/frequency", shown="frequency")
     loss_factors: Array = variable(
-        "load mode", "1", "loss factor, NaN where no joint predicts one", "modes/loss_factor", gaps=True
+        "load mode",
+        "1",
+        "loss factor, NaN where no joint predicts one",
+        "modes/loss_factor",
+        gaps=True,
+        shown="loss factor",
     )
     loss_error: Array = variable(
         "load mode", "1", "estimated relative error of the loss factor", "modes/loss_factor_error"
     )
-    free: Array = variable("mode", "Hz", "frequency with the faces apart", "modes/")
-    bonded: Array = variable("mode", "Hz", "frequency with the faces bonded", "modes/")
+    free: Array = variable("mode", "Hz", "frequency with the faces apart", "modes/", shown="free")
+    bonded: Array = variable("mode", "Hz", "frequency with the faces bonded", "modes/", shown="bonded")
     rigid: Array = variable("rigid_motion", "Hz", "largest frequency of each rigid motion, ideally 0", "modes/")
     mac: Array = variable(
         "load mode mode_other", "1", "MAC by mass of the modes at the first load with those at each", "modes/"
@@ -161,7 +186,17 @@ class RunRecord(Recorded):
     dowel_ends: Array | None = optional("dowel end axis", "m", "where each dowel begins and ends", "dowels/ends")
     dowel_diameters: Array | None = optional("dowel", "m", "diameter of each dowel", "dowels/diameter")
     dowel_shear: Array | None = optional(
-        "load dowel", "N", "greatest shear force of the dowel when all bolts are tight", "dowels/shear"
+        "load dowel",
+        "N",
+        "greatest shear force of the dowel when all bolts are tight",
+        "dowels/shear",
+        shown=ShownAs(
+            chapter="Structure",
+            title="Dowels",
+            line="shear force of each dowel when all bolts are tight",
+            below="The greatest shear force of each pin between two parts, when all bolts are tight.",
+            caption="The greatest shear force of each pin between two parts against preload.",
+        ),
     )
     outside_share: Array = variable(
         "load", "1", "share of the joints' stiffness where their law is outside its validity range", "joints/"
@@ -170,26 +205,42 @@ class RunRecord(Recorded):
         "load", "1", "share of the joints above the end of their law", "joints/above_range_share"
     )
     low: Array | None = optional(
-        "load mode", "Hz", "frequency at the lower end of the laws' range", "modes/frequency_low"
+        "load mode",
+        "Hz",
+        "frequency at the lower end of the laws' range",
+        "modes/frequency_low",
+        shown="low",
     )
     high: Array | None = optional(
-        "load mode", "Hz", "frequency at the upper end of the laws' range", "modes/frequency_high"
+        "load mode",
+        "Hz",
+        "frequency at the upper end of the laws' range",
+        "modes/frequency_high",
+        shown="high",
     )
-    interval_low: Array | None = optional("load mode", "Hz", "5 % of the frequency, of all that is not known", "modes/")
+    interval_low: Array | None = optional(
+        "load mode", "Hz", "5 % of the frequency, of all that is not known", "modes/", shown="5 %"
+    )
     interval_high: Array | None = optional(
-        "load mode", "Hz", "95 % of the frequency, of all that is not known", "modes/"
+        "load mode", "Hz", "95 % of the frequency, of all that is not known", "modes/", shown="95 %"
     )
     interval_offsets: Array | None = optional(
         "source end load mode", "1", "change of ln f at 5 and at 95 % of one thing that is not known", "modes/"
     )
     mesh_error: Array | None = optional(
-        "load mode", "1", "estimated relative error of the frequency by the mesh", "modes/"
+        "load mode",
+        "1",
+        "estimated relative error of the frequency by the mesh",
+        "modes/",
+        shown="error of the mesh",
     )
     levels: Array | None = optional(
         "level", "m/s2", "peak acceleration of the point that moves most", "modes/level_acceleration"
     )
     level_frequencies: Array | None = optional("load level mode", "Hz", "frequency at a level", "modes/")
-    level_damping: Array | None = optional("load level mode", "1", "damping ratio at a level", "modes/")
+    level_damping: Array | None = optional(
+        "load level mode", "1", "damping ratio at a level", "modes/", shown="damping ratio"
+    )
     level_low: Array | None = optional("load level mode", "1", "lower end of damping at a level", "modes/")
     level_high: Array | None = optional("load level mode", "1", "upper end of damping at a level", "modes/")
     level_slip: Array | None = optional("load level mode", "1", "damping by slip at a level", "modes/")
@@ -308,6 +359,23 @@ class RunRecord(Recorded):
         """The notes as sentences, those that differ in load and share alone as one; see `faying.notes.grouped`."""
         return tuple(note.text for note in grouped(self.notes))
 
+    def shown(self, chapter: str | None = None) -> dict[str, RecordedQuantity]:
+        """The quantities that the result has and that declare a table in a chapter of the report, or in any."""
+        return {
+            name: meta
+            for name, meta in declared(type(self)).items()
+            if (meta.shown.chapter if chapter is None else meta.shown.chapter == chapter)
+            and getattr(self, name) is not None
+        }
+
+    @property
+    def at_levels(self) -> DampedLevels | None:
+        """All that the result has at levels of acceleration; None where the study has no levels."""
+        found: dict[str, Any] = {
+            one.name: getattr(self, f"level_{one.name}", self.levels) for one in fields(DampedLevels)
+        }
+        return None if any(values is None for values in found.values()) else DampedLevels(**found)
+
     def open_share(self) -> Array:
         """Share of the joints' area that carries nothing [-] (l,)."""
         return np.asarray((self.pressure <= 0) @ self.weights / self.weights.sum())
@@ -404,25 +472,22 @@ class RunRecord(Recorded):
 
     def csv_text(self) -> str:
         """Return the rows of to_csv as text."""
-        columns = [
-            ("frequency", self.frequencies),
-            ("loss factor", self.loss_factors),
-            ("free", np.broadcast_to(self.free, self.frequencies.shape)),
-            ("bonded", np.broadcast_to(self.bonded, self.frequencies.shape)),
-            *(("low", self.low), ("high", self.high)),
-            *(("5 %", self.interval_low), ("95 %", self.interval_high)),
-        ]
-        kept = [(name, values) for name, values in columns if values is not None]
-        heads = [f"{name} [{'-' if name == 'loss factor' else 'Hz'}]" for name, _ in kept]
-        if self.mesh_error is not None:
-            heads, kept = [*heads, "error of the mesh [-]"], [*kept, ("", self.mesh_error)]
-        if self.levels is not None and self.level_damping is not None:
-            at = [(level, self.level_damping[:, k]) for k, level in enumerate(self.levels)]
-            heads += [f"damping ratio at {level:g} m/s2 [-]" for level, _ in at]
-            kept += [("", values) for _, values in at]
-        rows: list[list[Any]] = [["preload [N]", "mode", *heads]]
+        columns: list[tuple[str, Array]] = []
+        for name, meta in declared(type(self)).items():
+            head, values = meta.shown.column, getattr(self, name)
+            if not head or values is None:
+                continue
+            if "level" in meta.dims:
+                levels = () if self.levels is None else self.levels
+                columns += [
+                    (f"{head} at {level:g} m/s2 [{meta.unit_text}]", values[:, k]) for k, level in enumerate(levels)
+                ]
+            else:
+                at_modes = values[:, None] if meta.dims == ("load",) else values
+                columns.append((f"{head} [{meta.unit_text}]", np.broadcast_to(at_modes, self.frequencies.shape)))
+        rows: list[list[Any]] = [["preload [N]", "mode", *(head for head, _ in columns)]]
         for i, load in enumerate(self.loads):
             for j in range(len(self.bonded)):
-                row = [float(values[i, j]) for _, values in kept]
+                row = [float(values[i, j]) for _, values in columns]
                 rows.append([f"{load:.6g}", j + 1, *("" if np.isnan(v) else f"{v:.8g}" for v in row)])
         return csv_text(rows)

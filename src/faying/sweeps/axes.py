@@ -9,12 +9,12 @@ from faying import units
 from faying.contact.build import find
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
-from faying.form.form import VARIED
 from faying.misuse import checked_call
 from faying.study.keys.surface import Surface
-from faying.study.keys.varied import MODEL, OWN, formed, swept
+from faying.study.keys.varied import MODEL, varied
+from faying.study.keys.varied import words as words_of_keys
 from faying.study.study import Study
-from faying.sweeps.variation import StudyVariant, check_key
+from faying.sweeps.variation import StudyVariant, check_key, scaled_parts
 
 MAX_POINTS = 1_000_000  # points of a grid
 
@@ -31,6 +31,12 @@ class Axis:
     def numeric(self) -> bool:
         """Whether the values are numbers."""
         return not any(isinstance(value, str) for value in self.values)
+
+    @property
+    def of_form(self) -> bool:
+        """Whether the form of faces varies."""
+        number = varied(self.key)
+        return number is not None and number.of_form
 
     def read(self) -> str:
         """What the axis spans, for people."""
@@ -55,13 +61,10 @@ def axis_of(text: str) -> Axis:
         )
     if key == MODEL:
         return Axis(key=key, unit="", values=tuple(find(word).label for word in given.split(",")))
-    parameter = swept(key)
-    if parameter is None:
-        forms = f"joint.form.{{{', '.join(VARIED)}}}", "joint.NAME.form.SHAPE"
-        known = ", ".join(
-            (*OWN, "bolt.NAME.preload", "joint.NAME.stiffness", *forms, MODEL, "law.NAME (a parameter of the law)")
-        )
-        raise InputError(f"--set {key}: a sweep varies {known}; anything else needs a study of its own")
+    number = varied(key)
+    if number is None:
+        raise InputError(f"--set {key}: a sweep varies {words_of_keys()}; anything else needs a study of its own")
+    parameter = number.parameter
     unit = parameter.unit if parameter.is_number else ""
     words = given.split(":")
     if len(words) in (3, 4):
@@ -134,13 +137,12 @@ class Grid:
     @property
     def varies_form(self) -> bool:
         """Whether an axis varies the form of the faces."""
-        return any(formed(axis.key.split(".")) for axis in self.axes)
+        return any(axis.of_form for axis in self.axes)
 
     @property
     def varied_parts(self) -> tuple[str, ...]:
         """Parts whose stiffness or mass varies."""
-        found = (axis.key.split(".") for axis in self.axes)
-        return tuple(dict.fromkeys(parts[1] for parts in found if parts[0] == "part"))
+        return tuple(dict.fromkeys(part for axis in self.axes for part in scaled_parts(self.study, axis.key)))
 
     def point(self, index: int) -> StudyVariant:
         """Return the study at one place of the grid."""
@@ -161,7 +163,7 @@ class Grid:
             last = len(axis.values) - 1
             if not axis.numeric:
                 return list(range(last + 1))
-            steps = 4 if formed(axis.key.split(".")) else 1
+            steps = 4 if axis.of_form else 1
             return sorted({round(k * last / steps) for k in range(steps + 1)})
 
         found = [int(np.ravel_multi_index(place, self.shape)) for place in product(*map(ends, self.axes))]

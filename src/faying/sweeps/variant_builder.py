@@ -1,12 +1,13 @@
 """What makes the laws, forces, gaps and scales of one point of a sweep or of an ensemble."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from faying.case.case import Case, joint_law, materials_of
+from faying.case.case import Case, materials_of
+from faying.contact.auto import Choice
 from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
 from faying.form.waviness import ScanWaves
@@ -16,12 +17,16 @@ from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.reduction.part_shares import Scales
 from faying.reduction.reduced import ReducedModel
+from faying.study.keys.joint import JointChoice
+from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
 from faying.sweeps.variation import StudyVariant
 from faying.typing import Array
 
-LATELY = 32  # laws kept with their tables
+LATELY = 32  # laws and tables that are not made again
+Known = TypeVar("Known")
+Made = TypeVar("Made")
 
 
 def contact_shares(weights: Array, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> tuple[float, float]:
@@ -108,6 +113,38 @@ class JointPlacement:
         return self.geometry + form.with_scan(self.scan).at(self.positions, self.axes, self.weights)
 
 
+class Lately(Generic[Known, Made]):
+    """What was made lately, each with all that it was made from, which is compared by equality."""
+
+    def __init__(self) -> None:
+        self._made: list[tuple[Known, Made]] = []
+
+    def get(self, known: Known, make: Callable[[], Made]) -> Made:
+        """What was made from an equal object; made now where there is none."""
+        for other, made in reversed(self._made):
+            if other == known:
+                return made
+        self._made = [*self._made[1 - LATELY :], (known, make())]
+        return self._made[-1][1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MadeLaw:
+    """A contact law, and the laws of joints that have been laid with it, each with its tables."""
+
+    chosen: Choice
+    laid: Lately[JointLaw, JointLaw] = field(default_factory=Lately)
+
+    def on(self, joint: JointChoice, nu: float) -> JointLaw:
+        """The law on a joint. It is asked hundreds of times, so that its table pays however few points there are."""
+
+        def tabulated(law: JointLaw) -> JointLaw:
+            asked = replace(law, few=0)
+            return self.laid.get(asked, lambda: asked)
+
+        return joint.laid(self.chosen, nu, tabulated)
+
+
 @dataclass(frozen=True, kw_only=True)
 class VariantBuilder:
     """All that makes the laws and forces of a point: the design, and the materials that meet at each joint."""
@@ -115,13 +152,13 @@ class VariantBuilder:
     design: Design
     pairs: tuple[tuple[Material, Material], ...]
     places: tuple["JointPlacement", ...] = ()  # of each joint, where its form varies; empty where none does
-    # laws made lately, with their tables: along an axis of preload they stay the same
-    _lately: dict[tuple[Any, ...], JointLaw] = field(default_factory=dict, repr=False, compare=False)
+    # along an axis of preload the laws stay the same
+    _lately: Lately[tuple[int, LawChoice, Surface], MadeLaw] = field(default_factory=Lately, repr=False, compare=False)
     # the last point asked for, with the design that it is of
     _points: dict[int, tuple[Design, StudyVariant]] = field(default_factory=dict, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"design": self.design, "pairs": self.pairs, "places": self.places, "_lately": {}, "_points": {}}
+        return {"design": self.design, "pairs": self.pairs, "places": self.places, "_lately": Lately(), "_points": {}}
 
     def _point(self, index: int) -> StudyVariant:
         """The study at one point: asked for three times in turn, made once."""
@@ -143,19 +180,15 @@ class VariantBuilder:
     def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
         """Law of each joint, force of each bolt [N] and friction of each joint at one point."""
         point = self._point(index)
-        laws = []
-        for number, (joint, surface) in enumerate(zip(point.study.joints, point.surfaces, strict=True)):
-            choice = point.study.law_of(joint)
-            key = (number, joint.tangential, repr(choice), repr(surface.rough and surface.rough.inputs))
-            if key not in self._lately:
-                if len(self._lately) >= LATELY:
-                    self._lately.pop(next(iter(self._lately)))
-                made = joint_law(joint, choice, surface, *self.pairs[number])
-                # asked hundreds of times, so that its table pays however few points the joint has
-                self._lately[key] = replace(made, few=0)
-            law, factor = self._lately[key], point.stiffness.get(joint.name, 1.0)
-            laws.append(law if factor == 1 else law.scaled(factor))
+        laws = [self._law(point, number) for number in range(len(point.surfaces))]
         return laws, point.forces, [joint.friction for joint in point.study.joints]
+
+    def _law(self, point: StudyVariant, number: int) -> JointLaw:
+        """Law of one joint at one point."""
+        joint, surface, (rough, other) = point.study.joints[number], point.surfaces[number], self.pairs[number]
+        law = point.study.law_of(joint)
+        made = self._lately.get((number, law, surface), lambda: MadeLaw(chosen=law.make(surface, rough, other)))
+        return made.on(joint, rough.nu)
 
     def model_at(self, model: ReducedModel, index: int) -> ReducedModel:
         """A model of the structure with the gaps and the scales of one point."""

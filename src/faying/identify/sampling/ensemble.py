@@ -14,10 +14,10 @@ from faying.errors import FayingError, InputError
 from faying.identify.sampling.points import at_shares, sobol
 from faying.study.keys.surface import Surface
 from faying.study.keys.uncertain import Input, UncertainChoice
-from faying.study.keys.varied import MODEL, formed
+from faying.study.keys.varied import MODEL, varied
 from faying.study.study import Study
 from faying.surface.estimators.base import EstimateScatter
-from faying.sweeps.variation import StudyVariant, check_key
+from faying.sweeps.variation import StudyVariant, check_key, scaled_parts
 from faying.typing import Array
 
 LEVEL = "surface.level"  # of the spectrum in the middle of its band, at a given D
@@ -47,8 +47,7 @@ class Inputs:
         choice = scattering(study)
         columns = list(choice.inputs)
         for column in columns:
-            if column.key.split(".")[0] in ("surface", "law", "joint", "bolt"):
-                check_key(study, column.key, models=bool(choice.models), where=f"uncertain.{column.key}")
+            check_key(study, column.key, models=bool(choice.models), where=f"uncertain.{column.key}")
         scatter = None
         if choice.fit:
             if any(column.key in ("surface.D", "surface.G") for column in columns):
@@ -81,44 +80,18 @@ class Inputs:
         weights = [weight for _, weight in self.models]
         return sum(weights[:law]) + 0.5 * weights[law]
 
-    def put(self, point: StudyVariant, values: Array, original: Study) -> StudyVariant:
-        """The point with values (d,) put in; the materials of `original` are those of the matrices."""
+    def put(self, point: StudyVariant, values: Array) -> StudyVariant:
+        """The point with values (d,) put in."""
         named = dict(zip(self.names, values.tolist(), strict=True))
         if self.scatter is not None:
             point = _with_surface(point, self.scatter, named)
         for key, value in named.items():
-            room, name = key.split(".")[0], key.rpartition(".")[2]
-            if key == MODEL:
-                point = point.with_value(key, self.model(value))
-            elif room == "material":
-                material = _material_of(key)
-                ratio = value / getattr(original.materials[material], name)
-                point = point.with_scales(
-                    _parts_of(original, material), **{"stiffness" if name == "E" else "mass": ratio}
-                )
-            else:
-                point = point.with_value(key, value)
+            point = point.with_value(key, self.model(value) if key == MODEL else value)
         return point
 
     def scaled_parts(self, study: Study) -> tuple[str, ...]:
         """Parts whose stiffness or mass scatters."""
-        out = []
-        for key in self.names:
-            words = key.split(".")
-            if words[0] == "part":
-                out.append(words[1])
-            elif words[0] == "material":
-                out += _parts_of(study, _material_of(key))
-        return tuple(dict.fromkeys(out))
-
-
-def _material_of(key: str) -> str:
-    """Name of the material of a key material.NAME.E; it may have dots of its own."""
-    return key.partition(".")[2].rpartition(".")[0]
-
-
-def _parts_of(study: Study, material: str) -> list[str]:
-    return [part for part, used in study.parts.items() if used == material]
+        return tuple(dict.fromkeys(part for key in self.names for part in scaled_parts(study, key)))
 
 
 def scattering(study: Study) -> UncertainChoice:
@@ -264,7 +237,7 @@ class Ensemble:
     @property
     def varies_form(self) -> bool:
         """Whether the form of the faces scatters."""
-        return any(formed(key.split(".")) for key in self.inputs.names)
+        return any(number.of_form for number in map(varied, self.inputs.names) if number is not None)
 
     @property
     def varied_parts(self) -> tuple[str, ...]:
@@ -292,7 +265,7 @@ class Ensemble:
         forces = np.array([one.forces for one in self.study.preloads])
         try:
             point = StudyVariant(study=self.study, surfaces=self.surfaces, forces=forces)
-            return self.inputs.put(point, self.values[sample], self.study)
+            return self.inputs.put(point, self.values[sample])
         except FayingError as fault:
             raise InputError(f"a sample of the study cannot be: {fault}") from None
 

@@ -4,7 +4,8 @@ Readers, messages, the JSON schema, the page's form and the reference follow fro
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
+from math import inf
 from typing import Any
 
 from faying.contact.parameter import FILE, TEXT, Parameter
@@ -21,6 +22,23 @@ INTEGER = {"type": "integer", "minimum": 1, "maximum": MAX_COUNT}
 
 Schema = Mapping[str, Any]
 Read = Callable[[Any, str], Any]
+Put = Callable[[Any, Any], Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Varies:
+    """That a number may vary in sweeps and scatter, while the mesh and the matrices of the parts stay.
+
+    Args:
+        put: returns the owner of the number (`study.keys.varied.rooms`) with a value in SI units put in; None puts it
+            in the owner's field of that name.
+        place: where the number stands in its table, with dots; "" under its own name.
+        short: what [uncertain] may call it as well.
+    """
+
+    put: Put | None = None
+    place: str = ""
+    short: str = ""
 
 
 @dataclass(frozen=True)
@@ -37,6 +55,8 @@ class Key:
         unit: SI unit of a quantity.
         allowed: range or choices, in words.
         is_file: whether it names a file.
+        parameter: unit, range and choices of one value; None where what is written has more parts, or is not a value.
+        varies: how it varies in sweeps and scatter; None where it cannot.
         examples: returns values among those that are often taken, or all that a list outside of the study holds.
     """
 
@@ -49,12 +69,30 @@ class Key:
     unit: str = ""
     allowed: str = ""
     is_file: bool = False
+    parameter: Parameter | None = None
+    varies: Varies | None = None
     examples: Callable[[], Iterable[str]] = tuple
 
     @property
     def default_text(self) -> str:
         """The default as a study writes it; "" where there is none."""
         return "" if self.default is REQUIRED else _written(self.default, self.unit)
+
+    @property
+    def value(self) -> Parameter:
+        """Unit, range and choices of one value."""
+        if self.parameter is None:
+            raise TypeError(f"a key that says {self.says!r} has no single value")
+        return self.parameter
+
+    def put(self, name: str) -> Put:
+        """How a value is put in the owner of this number, whose field has the name where nothing else is declared."""
+        own = None if self.varies is None else self.varies.put
+        return own or (lambda owner, value: replace(owner, **{name: value}))
+
+    def varying(self, put: Put | None = None, *, place: str = "", short: str = "") -> "Key":
+        """The same key, whose number may vary; see `Varies`."""
+        return replace(self, varies=Varies(put=put, place=place, short=short))
 
     @classmethod
     def quantity(cls, unit: str, says: str, default: Any = None, *, positive: bool = True) -> "Key":
@@ -67,6 +105,7 @@ class Key:
             read=lambda value, name: values.quantity(value, unit, name, positive=positive),
             unit=unit,
             allowed="positive" if positive and default != 0 else "",
+            parameter=Parameter(unit, says, 0 if positive else -inf),
         )
 
     @classmethod
@@ -79,13 +118,14 @@ class Key:
             default,
             read=lambda value, name: values.text(value, name, choices),
             allowed=" or ".join(f'"{word}"' for word in choices),
+            parameter=Parameter(TEXT, says, choices=choices),
             **given,
         )
 
     @classmethod
     def number(cls, says: str, default: Any = None) -> "Key":
         """A plain number."""
-        return cls("number", NUMBER, says, default, read=values.number)
+        return cls("number", NUMBER, says, default, read=values.number, parameter=Parameter("", says))
 
     @classmethod
     def within(cls, least: float, greatest: float, says: str, default: Any = None) -> "Key":
@@ -94,7 +134,9 @@ class Key:
         def read(value: Any, name: str) -> float:
             return values.within(value, name, least, greatest)
 
-        return cls("number", NUMBER, says, default, read=read, allowed=f"{least:g} to {greatest:g}")
+        parameter = Parameter("", says, least, greatest, "[]")
+        allowed = f"{least:g} to {greatest:g}"
+        return cls("number", NUMBER, says, default, read=read, allowed=allowed, parameter=parameter)
 
     @classmethod
     def count(cls, says: str, default: Any = None, *, most: int = MAX_COUNT) -> "Key":
@@ -137,7 +179,7 @@ class Key:
         """A key with the unit, range, choices and words of a parameter of a law or a form."""
         unit = parameter.unit if parameter.is_number else ""
         if parameter.unit == FILE:
-            return cls.file(parameter.meaning, default)
+            return replace(cls.file(parameter.meaning, default), parameter=parameter)
         if parameter.unit == TEXT:
             schema = _one_of(parameter.choices)
         elif parameter.is_switch:
@@ -145,8 +187,17 @@ class Key:
         else:
             schema = QUANTITY if unit else NUMBER
         kind = f"quantity [{unit}]" if unit else "number" if parameter.is_number else TEXT
-        read, allowed = parameter.read, parameter.allowed
-        return cls(kind, schema, parameter.meaning, default, read=read, unit=unit, allowed=allowed)
+        allowed = parameter.allowed
+        return cls(
+            kind,
+            schema,
+            parameter.meaning,
+            default,
+            read=parameter.read,
+            unit=unit,
+            allowed=allowed,
+            parameter=parameter,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

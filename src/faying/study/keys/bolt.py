@@ -1,13 +1,18 @@
 """[[bolt]]: where a bolt is, what it is made of, and the forces or torques that tighten it."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from math import isclose
+from operator import mul
 from typing import Any
+
+import numpy as np
 
 from faying.bolt.bolt import Bolt, Washer, torque_to_preload
 from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import PROOF, Fastener, Thread
+from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import CATALOGUE, Material
 from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed, one_or_more
@@ -198,7 +203,10 @@ BOLT: Declared = {
     ),
     "thread_friction": Key.number("Coefficient of friction in the thread."),
     "head_friction": Key.number("Coefficient of friction under the head."),
-    "preload": _rising("N", "12 kN", 'One force or several that rise, for example ["6 kN", "12 kN"].'),
+    "preload": replace(
+        _rising("N", "12 kN", 'One force or several that rise, for example ["6 kN", "12 kN"].'),
+        parameter=Parameter("N", "preload of the bolts", 0),
+    ).varying(lambda forces, value: np.full_like(forces, value)),
     "torque": _rising("N*m", "20 N m", "One tightening torque or several that rise, in place of preload."),
     "nut_factor": Key.number("K of F = T/(K d)."),
     "grade": Key.text(
@@ -244,4 +252,9 @@ BOLT: Declared = {
         positive=False,
     ),
     "head": Key.text("The head of the screw.", "hexagon", ("hexagon", "socket")),
+}
+
+# numbers that vary and that no key of [[bolt]] holds
+BOLT_FACTORS: Declared = {
+    "factor": Key.of_parameter(Parameter("", "factor on the preload of the bolts", 0)).varying(mul),
 }

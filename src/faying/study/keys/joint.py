@@ -1,12 +1,15 @@
 """[[joint]]: two faces that meet, with the form, surface and law of this joint alone."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from faying.contact.auto import Choice
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
-from faying.form.form import Form
-from faying.study.declaration.declared import NUMBER, Declared, Inner, Key
+from faying.form.form import VARIED, Form
+from faying.joint.joint_law import JointLaw
+from faying.study.declaration.declared import NUMBER, Declared, Inner, Key, Put
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import MOST_FRICTION
 from faying.study.keys.face import face_names, two_faces
@@ -35,7 +38,8 @@ class JointChoice:
 
     search_distance [m] between faces that count as meeting; surface and law: of this joint alone, those of the study
     where None; form: the distance of the faces before any load, roughness apart; bonded: whether the faces are
-    welded or glued, which takes nothing else; number: its place among the [[joint]] of the study, from 1.
+    welded or glued, which takes nothing else; number: its place among the [[joint]] of the study, from 1; stiffness: a
+    factor on both stiffnesses of its law [-], which sweeps and scatter vary.
     """
 
     name: str
@@ -49,6 +53,19 @@ class JointChoice:
     form: Form | None = None
     bonded: bool = False
     number: int = 0
+    stiffness: float = 1.0
+
+    def laid(self, choice: Choice, nu: float, made: Callable[[JointLaw], JointLaw] | None = None) -> JointLaw:
+        """Lay a contact law on this joint.
+
+        Args:
+            choice: the law, and why it was taken.
+            nu: Poisson's ratio of the rough face [-].
+            made: returns a law that equals its argument and may have its tables already; the argument where None.
+        """
+        law = JointLaw(model=choice.law, tangential=self.tangential, nu=nu, reason=choice.reason, mates=choice.mates)
+        law = law if made is None else made(law)
+        return law if self.stiffness == 1 else law.scaled(self.stiffness)
 
     @classmethod
     def of(cls, table: Table, index: int) -> "JointChoice":
@@ -108,6 +125,14 @@ JOINT: Declared = {
         "per-area",
         ("per-area", "per-node"),
     ),
+    "friction": Key.within(
+        0,
+        MOST_FRICTION,
+        (
+            "Coefficient at which the joint slips while the bolts are tightened, and in a backbone; "
+            "sticks everywhere where left out."
+        ),
+    ).varying(short="friction"),
     "tangential": Key(
         '"law", "mindlin", or k_t/k_n, above 0 and at most 2',
         {"anyOf": [NUMBER, {"enum": ["law", "mindlin"]}]},
@@ -117,15 +142,34 @@ JOINT: Declared = {
             "That of the law where it has one, else Mindlin's, if left out."
         ),
         read=_tangential,
-    ),
-    "friction": Key.within(
-        0,
-        MOST_FRICTION,
-        (
-            "Coefficient at which the joint slips while the bolts are tightened, and in a backbone; "
-            "sticks everywhere where left out."
-        ),
-    ),
+        parameter=TANGENTIAL,
+    ).varying(),
     "search_distance": Key.quantity("m", "Largest distance of two faces that still make a joint."),
     "form": Inner(says="Form of the two faces together, as a gap. What is given adds up.", keys=FORM),
+}
+
+
+def _in_form(name: str) -> Put:
+    """Puts a number in the form of a joint."""
+
+    def put(joint: JointChoice, value: float) -> JointChoice:
+        return replace(joint, form=(joint.form or Form()).with_value(name, value))
+
+    return put
+
+
+# where the numbers of a form stand under [joint], and what [uncertain] calls them, where it is not their own name
+_PLACES = {"waviness": "form.waviness.Wq", "waviness_seed": "form.waviness.seed"}
+_SHORT = {"flatness": "flatness", "waviness": "waviness"}
+# numbers that vary and that no key of [[joint]] holds by their name
+JOINT_NUMBERS: Declared = {
+    "stiffness": Key.of_parameter(Parameter("", "factor on both stiffnesses of the joints", 0)).varying(
+        short="stiffness"
+    ),
+    **{
+        f"form.{name}": Key.of_parameter(parameter).varying(
+            _in_form(name), place=_PLACES.get(name, ""), short=_SHORT.get(name, "")
+        )
+        for name, parameter in VARIED.items()
+    },
 }

@@ -1,7 +1,7 @@
 """[law]: which contact law, and its parameters as the law declares them."""
 
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from difflib import get_close_matches
 from typing import Literal
 
@@ -11,7 +11,7 @@ from faying.contact.inputs import RoughSurface
 from faying.contact.mates import Mates
 from faying.contact.parameter import TABLE
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
-from faying.study.declaration.declared import WORDS, Inner, Key
+from faying.study.declaration.declared import WORDS, Inner, Key, Put
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import text
 from faying.study.keys.surface import Surface
@@ -125,6 +125,15 @@ def _note_misplaced(table: Table, kind: LawKind) -> bool:
     return found
 
 
+def in_law(name: str) -> Put:
+    """Puts a value in an entry of a law."""
+
+    def put(law: LawChoice, value: object) -> LawChoice:
+        return replace(law, given={**law.given, name: value})
+
+    return put
+
+
 def _of_laws() -> dict[str, dict[str, Key]]:
     """What [law] takes with each law, with the defaults that the law has."""
     out = {}
@@ -145,7 +154,9 @@ LAW = Inner(
             read=lambda value, name: find(text(value, name)),
             examples=lambda: sorted(label.lower() for label in kinds()),
         ),
-        "counterbody": Key.text("The other body is the part that is there, or rigid.", "part", ("part", "rigid")),
+        "counterbody": Key.text(
+            "The other body is the part that is there, or rigid.", "part", ("part", "rigid")
+        ).varying(),
     },
     models=_of_laws,
 )

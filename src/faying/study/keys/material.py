@@ -1,7 +1,9 @@
 """[material.NAME] and [part.NAME]: what the parts are made of."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
+from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import CATALOGUE, STIFFEST, Material
 from faying.study.declaration.declared import NAME, REQUIRED, Declared, Inner, Key
@@ -56,9 +58,9 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
 
 
 MATERIAL: Declared = {
-    "E": Key.quantity("Pa", "Young's modulus.", REQUIRED),
+    "E": Key.quantity("Pa", "Young's modulus.", REQUIRED).varying(short="E"),
     "nu": Key.number("Poisson's ratio, below 0.495 for parts.", REQUIRED),
-    "density": Key.quantity("kg/m^3", "Density.", REQUIRED),
+    "density": Key.quantity("kg/m^3", "Density.", REQUIRED).varying(short="density"),
     "yield_strength": Key.quantity("Pa", "Yield strength; gives the hardness where that is left out."),
     "hardness": Key.quantity(
         "Pa",
@@ -102,3 +104,12 @@ PARTS = Inner(
         )
     },
 )
+# factors that vary, on the matrices of one part
+PART_FACTORS: Declared = {
+    "stiffness": Key.of_parameter(Parameter("", "factor on the stiffness of a part", 0)).varying(
+        lambda material, factor: replace(material, E=material.E * factor)
+    ),
+    "mass": Key.of_parameter(Parameter("", "factor on the mass of a part", 0)).varying(
+        lambda material, factor: replace(material, density=material.density * factor)
+    ),
+}

@@ -7,10 +7,11 @@ from typing import Any
 
 from faying import cache, units
 from faying.contact.inputs import FractalSurface, RoughSurface
+from faying.contact.parameter import FRACTAL
 from faying.contact.two_faces import COUNTERS, Counter, RoughPair
 from faying.errors import InputError
 from faying.form.waviness import ScanWaves
-from faying.study.declaration.declared import QUANTITY, Declared, Key
+from faying.study.declaration.declared import QUANTITY, Declared, Key, Put
 from faying.study.declaration.reader import Table
 from faying.surface.estimators.table import METHODS
 from faying.surface.files.read import read_scan
@@ -190,6 +191,11 @@ class Surface:
         return given | fitted | {"origin": self.origin, "counter": self.counter}
 
 
+def _in_surface(name: str) -> Put:
+    """Puts a number in a surface."""
+    return lambda surface, value: surface.with_number(name, value)
+
+
 NO_SURFACE = Surface(faces=None, origin="none: the contact law brings its own heights")
 
 SURFACE: Declared = {
@@ -199,9 +205,13 @@ SURFACE: Declared = {
     "size": _lengths("Size of the scan, where the file states neither size nor spacing."),
     "spacing": _lengths("Spacing of the points, where the file states neither size nor spacing."),
     "method": Key.text("Estimator of D and G.", "psd", examples=lambda: METHODS),
-    "D": Key.number("Fractal dimension of both faces together, between 2 and 3."),
-    "G": Key.quantity("m", "Fractal roughness of both faces together, in the convention of Yan and Komvopoulos."),
-    "scan_area": Key.quantity("m^2", "Area of the scan that D and G come from."),
+    "D": replace(
+        Key.number("Fractal dimension of both faces together, between 2 and 3."), parameter=FRACTAL["D"]
+    ).varying(_in_surface("D")),
+    "G": Key.quantity(
+        "m", "Fractal roughness of both faces together, in the convention of Yan and Komvopoulos."
+    ).varying(_in_surface("G")),
+    "scan_area": Key.quantity("m^2", "Area of the scan that D and G come from.").varying(_in_surface("scan_area")),
     "counter": Key.text(
         (
             'The other face: "same" (alike in its statistics, unrelated point by point), "smooth", '

@@ -9,28 +9,14 @@ from typing import Any
 from faying import units
 from faying.bolt.tightening import tightening
 from faying.contact.build import find
-from faying.contact.parameter import Parameter
 from faying.distribution import Distribution, uncertain_text
 from faying.errors import InputError
-from faying.form.form import PARAMETERS as SHAPES
-from faying.form.form import VARIED
 from faying.materials import Material
 from faying.study.declaration.reader import Faults
 from faying.study.declaration.values import quantity
 from faying.study.keys.joint import JointChoice
-from faying.study.keys.varied import MODEL, swept
+from faying.study.keys.varied import MODEL, Varied, number_of, rooms, short_keys, varied, words
 
-# short keys, and what they stand for
-SHORT = {
-    "friction": "joint.friction",
-    "stiffness": "joint.stiffness",
-    "flatness": "joint.form.flatness",
-    "waviness": "joint.form.waviness",
-}
-OF_MATERIAL = {
-    "E": Parameter("Pa", "Young's modulus of the parts of a material", 0),
-    "density": Parameter("kg/m^3", "density of the parts of a material", 0),
-}
 OF_TEST = ("test", "discrepancy", "test_loss", "discrepancy_loss")
 DISTRIBUTIONS = {"distribution", "tightening", "scatter"}  # keys of a table that is one value
 OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", MODEL)  # that are not plain distributions
@@ -101,65 +87,45 @@ def extracted(data: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
 
     A text that its number cannot have is left where it is, for the reader to refuse.
     """
-    data = dict(data)
     found: dict[str, str] = {}
 
-    def lift(table: Any, room: str, parameters: Mapping[str, Parameter]) -> Any:
-        if not isinstance(table, Mapping):
-            return table
-        out = dict(table)
-        for name, parameter in parameters.items():
-            if uncertain_text(out.get(name)):
-                try:
-                    median = Distribution.read(out[name], parameter.unit).median
-                except InputError:
-                    continue
-                found[f"{room}.{name}"] = out[name]
-                out[name] = f"{median!r} {parameter.unit}" if parameter.unit else median
-        return out
+    def lifted(owner: Any, room: str, name: str = "") -> Any:
+        head = f"{room}.{name}" if name else room
+        for number in filter(None, (varied(f"{head}.{name}") for name in rooms()[room].numbers)):
+            if number.scatters:
+                owner, text = _lifted(owner, number.place.split("."), number.parameter.unit)
+                found.update({number.key: text} if text else {})
+        return owner
 
-    if isinstance(data.get("material"), Mapping):
-        data["material"] = {k: lift(t, f"material.{k}", OF_MATERIAL) for k, t in data["material"].items()}
-    joints = data.get("joint")
-    joints = [joints] if isinstance(joints, Mapping) else joints
-    if isinstance(joints, list):
-        out = []
-        for index, joint in enumerate(joints):
-            name = joint.get("name", f"joint {index + 1}") if isinstance(joint, Mapping) else ""
-            joint = lift(
-                joint, f"joint.{name}", {key: _parameter(f"joint.{key}") for key in ("friction", "tangential")}
-            )
-            if isinstance(joint, dict) and "form" in joint:
-                shapes = {key: parameter for key, parameter in SHAPES.items() if not parameter.whole}
-                joint["form"] = lift(joint["form"], f"joint.{name}.form", shapes)
-                if isinstance(joint["form"], dict) and isinstance(joint["form"].get("waviness"), Mapping):
-                    waves, size = dict(joint["form"]["waviness"]), f"joint.{name}.form.waviness"
-                    waves = lift(waves, size, {"Wq": VARIED["waviness"]})
-                    if f"{size}.Wq" in found:
-                        found[size] = found.pop(f"{size}.Wq")
-                    joint["form"]["waviness"] = waves
-            out.append(joint)
-        data["joint"] = out
-    for room in ("law", "surface"):
-        if isinstance(data.get(room), Mapping):
-            parameters = {name: p for name in data[room] if (p := _declared(f"{room}.{name}")) is not None}
-            data[room] = lift(data[room], room, parameters)
-    return data, found
+    def of_room(table: Any, room: str, named: str) -> Any:
+        if named == "optional" and isinstance(table, list | Mapping):
+            entries = [table] if isinstance(table, Mapping) else table
+            names = [one.get("name", "") if isinstance(one, Mapping) else "" for one in entries]
+            return [lifted(one, room, names[k] or f"{room} {k + 1}") for k, one in enumerate(entries)]
+        if named == "always" and isinstance(table, Mapping):
+            return {name: lifted(one, room, name) for name, one in table.items()}
+        return lifted(table, room) if named == "never" else table
+
+    tables = {room: of_room(data[room], room, there.named) for room, there in rooms().items() if room in data}
+    return {**data, **tables}, found
 
 
-def _declared(key: str) -> Parameter | None:
-    """What a key of a number declares; None where there is no such key, or it is not a number."""
-    parts = key.split(".")
-    if parts[0] == "material":
-        return OF_MATERIAL.get(parts[-1]) if len(parts) == 3 else None
-    parameter = swept(key)
-    return parameter if parameter is not None and parameter.is_number and not parameter.whole else None
-
-
-def _parameter(key: str) -> Parameter:
-    found = _declared(key)
-    assert found is not None
-    return found
+def _lifted(table: Any, place: Sequence[str], unit: str) -> tuple[Any, str]:
+    """A table with the median in place of a text that scatters, and that text; "" where there is none."""
+    key, *rest = place
+    if not isinstance(table, Mapping) or key not in table:
+        return table, ""
+    value: Any = table[key]
+    text = ""
+    if rest:
+        value, text = _lifted(value, rest, unit)
+    elif uncertain_text(value):
+        try:
+            median = Distribution.read(value, unit).median
+        except InputError:
+            return table, ""
+        text, value = value, f"{median!r} {unit}" if unit else median
+    return {**table, key: value} if text else table, text
 
 
 def read_uncertain(
@@ -213,7 +179,7 @@ class _Reader:
     def take(self, key: str, value: Any) -> None:
         """Take one key of the table."""
         where = f"uncertain.{key}"
-        key = SHORT.get(key, key)
+        key = short_keys().get(key, key)
         parts = key.split(".")
         if key == "preload":
             self._preload(value, where)
@@ -227,8 +193,8 @@ class _Reader:
             self.rest |= {"fit": True, "scans": self._files(value, where)}
         elif key == "law.model":
             self.rest["models"] = _weights(value, where)
-        elif key in OF_MATERIAL:
-            self._of_material(key, value, where)
+        elif parts[0] == "material" and len(parts) == 2:
+            self._of_material(parts[1], value, where)
         elif parts[-2:] == ["form", "flatness"]:
             self._flatness(parts, value, where)
         elif parts[-2:] == ["form", "waviness"]:
@@ -238,20 +204,16 @@ class _Reader:
 
     def add(self, key: str, value: Any, where: str, *, within: bool = False) -> None:
         """Take the distribution of one number."""
-        parameter = _declared(key)
-        if parameter is None:
-            raise InputError(
-                f"{where} cannot scatter; what can: {', '.join((*SHORT, *OF_MATERIAL, *OWN))}, "
-                "material.NAME.E, material.NAME.density, part.NAME.stiffness, part.NAME.mass, bolt.preload, "
-                "bolt.NAME.preload, bolt.NAME.factor, joint.NAME.friction, joint.NAME.stiffness, "
-                "joint.NAME.tangential, joint.NAME.form.SHAPE, surface.D, surface.G, law.NAME"
-            )
-        self._check(key, where)
+        number = varied(key)
+        if number is None or not number.scatters:
+            raise InputError(f"{where} cannot scatter; what can: {', '.join((*short_keys(), *OWN))}, {words()}")
+        self._check(number, where)
         if not isinstance(value, str | Mapping) or not value:
             raise InputError(f'{where} = {value!r} is not a distribution; write for example "0.1 to 0.6" or "2 +- 0.1"')
-        self._add(key, Distribution.read(value, parameter.unit, where), parameter, where, within)
+        self._add(key, Distribution.read(value, number.parameter.unit, where), where, within)
 
-    def _add(self, key: str, found: Distribution, parameter: Parameter, where: str, within: bool = False) -> None:
+    def _add(self, key: str, found: Distribution, where: str, within: bool = False) -> None:
+        parameter = number_of(key).parameter
         if key in self.inputs:
             raise InputError(f"{where}: {key} scatters already by another line; leave one of them out")
         try:
@@ -260,19 +222,16 @@ class _Reader:
             raise InputError(f"{where}: {fault}") from None
         self.inputs[key] = Input(key=key, distribution=found, unit=parameter.unit, cut=cut, within=within)
 
-    def _check(self, key: str, where: str) -> None:
+    def _check(self, number: Varied, where: str) -> None:
         """Raise InputError where a key names nothing that the study has."""
-        parts = key.split(".")
-        names = {
+        known = {
             "joint": [joint.name for joint in self.known.joints],
             "bolt": list(self.known.bolts),
             "part": list(self.known.parts),
             "material": sorted(set(self.known.parts.values())),
-        }.get(parts[0])
-        named = len(parts) == 4 or (len(parts) == 3 and parts[1] != "form")
-        if names is not None and named and parts[1] not in names:
-            raise InputError(f"{where}: no {parts[0]} is called {parts[1]!r}; give one of {', '.join(names)}")
-        if parts[0] == "bolt" and parts[-1] == "preload" and self.known.loads > 1:
+        }
+        number.check_owner(known, where)
+        if number.room == "bolt" and number.name == "preload" and self.known.loads > 1:
             raise InputError(
                 f"{where}: the study has {self.known.loads} preloads; let a factor on all of them scatter, for example "
                 'preload = {tightening = "torque wrench, friction estimated"} or bolt.factor = "1 +- 0.1"'
@@ -289,7 +248,7 @@ class _Reader:
             scatter = _percent(value["scatter"], f"{where}.scatter")
             found = Distribution(kind="normal", centre=1.0, spread=scatter / 2)
         for name in self.known.bolts:
-            self._add(f"bolt.{name}.factor", found, _parameter("bolt.factor"), where)
+            self._add(f"bolt.{name}.factor", found, where)
 
     def _of_material(self, key: str, value: Any, where: str) -> None:
         """E or density of the one material that the parts have."""
@@ -307,7 +266,7 @@ class _Reader:
             for shape, sd in SHAPE_SD.items():
                 centre = 0.0 if joint.form is None else float(getattr(joint.form, shape))
                 found = Distribution(kind="normal", centre=centre, spread=sd * tolerance)
-                self._add(f"joint.{joint.name}.form.{shape}", found, SHAPES[shape], where)
+                self._add(f"joint.{joint.name}.form.{shape}", found, where)
 
     def _waviness(self, parts: list[str], value: Any, where: str) -> None:
         """The waves of each joint, or of one: which are drawn, and how large unless that is given (value: true)."""
@@ -321,12 +280,13 @@ class _Reader:
                     'example "0.5 um to 2 um", the rms of the waves of each face'
                 )
             draws = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
-            self._add(f"{key}_seed", draws, VARIED["waviness_seed"], where)
+            self._add(f"{key}_seed", draws, where)
 
     def _joints(self, parts: list[str], where: str) -> list[JointChoice]:
         """The joint that a key names, or all of them."""
-        self._check(".".join(parts), where)
-        return [joint for joint in self.known.joints if len(parts) < 4 or joint.name == parts[1]]
+        number = number_of(".".join(parts))
+        self._check(number, where)
+        return [joint for joint in self.known.joints if number.owner in (None, joint.name)]
 
     def _files(self, value: Any, where: str) -> tuple[Path, ...]:
         if not isinstance(value, list) or not value or not all(isinstance(one, str) for one in value):
