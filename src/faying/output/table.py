@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from itertools import product
-from math import floor, log10
+from math import floor, isnan, log10
 from typing import Any
 
 import numpy as np
@@ -63,7 +63,7 @@ def damping(result: Result) -> Rows:
     assert result.level_frequencies is not None
     heads = [*(f"{level:g} m/s2 [%]" for level in result.levels), "change of f [%]"]
     change = 100 * (result.level_frequencies[-1, -1] / result.frequencies[-1] - 1)
-    words = [f"{one:+.3f}" if abs(one) >= MIN_CHANGE else "0" for one in change]
+    words = ["-" if isnan(one) else f"{one:+.3f}" if abs(one) >= MIN_CHANGE else "0" for one in change]
     levels = range(len(result.levels))
     return by_mode(heads, ([*(damping_at(result, k, j) for k in levels), word] for j, word in enumerate(words)))
 
@@ -74,7 +74,7 @@ def damping_at(result: Result, level: int, mode: int) -> str:
     assert result.level_damping is not None
     assert result.level_high is not None
     ends = (result.level_low, result.level_damping, result.level_high)
-    return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in ends)
+    return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in ends).replace("nan", "-")
 
 
 def _five(value: float) -> str:
