@@ -36,6 +36,7 @@ LIMITS = frozenset(
         "outside-validity",
         "beyond-law",
         "level-damping",
+        "no-level-answer",
         "no-level-damping",
         "window",
         "falls",

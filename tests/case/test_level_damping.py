@@ -116,26 +116,28 @@ def test_no_levels_no_damping(study):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mode", [3, 4, 5])
-def test_levels_are_those_of_the_backbone(fine, mode):
+@pytest.mark.parametrize(("mode", "friction", "top"), [(3, 0.03, 100.0), (4, 0.1, 300.0), (5, 0.2, 100.0)])
+def test_levels_are_those_of_the_backbone(fine, mode, friction, top):
     """Harmonic balance with harmonics 0 to 3, on the same laws and points: half a per cent of a damping up to 0.3 %."""
-    joints = tuple(replace(joint, friction=0.2) for joint in fine.joints)
+    joints = tuple(replace(joint, friction=friction) for joint in fine.joints)
     plan = replace(fine, joints=joints)
-    curve = faying.backbone(plan, mode, 0.2, (1.0, 100.0), rest_damping=0.0)
-    picked = [k for k in range(len(curve.acceleration)) if 1e-5 < curve.damping[k] < 3e-3][::4]
+    curve = faying.backbone(plan, mode, friction, (0.1, top), rest_damping=0.0)
+    picked = [k for k in range(len(curve.acceleration)) if curve.damping[k] > 1e-5][::4]
     levels = tuple(float(curve.acceleration[k]) for k in picked)
     found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
     slip = found.level_slip[0, :, mode - 1]
-    assert slip == pytest.approx(curve.damping[picked], rel=5e-3, abs=1e-7)
+    few = curve.damping[picked] < 3e-3
+    assert slip[few] == pytest.approx(curve.damping[picked][few], rel=5e-3, abs=1e-7)
+    assert slip == pytest.approx(curve.damping[picked], rel=0.02)
     assert np.all(np.abs(slip / curve.damping[picked] - 1) < found.level_error[0, :, mode - 1] + 2e-3)
     # the loss of the law at rest, which the curve leaves out, moves the complex mode by as much at every level
     change = np.diff(found.level_frequencies[0, :, mode - 1])
-    assert change == pytest.approx(np.diff(curve.frequency[picked]), abs=1e-4 * curve.frequency[0])
+    assert change == pytest.approx(np.diff(curve.frequency[picked]), abs=5e-4 * curve.frequency[0])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mode", [1, 3, 4])
-def test_levels_are_those_of_the_backbone_on_lapped_plates(mode):
+@pytest.mark.parametrize(("mode", "friction", "top"), [(1, 0.1, 100.0), (3, 0.2, 100.0), (4, 0.5, 300.0)])
+def test_levels_are_those_of_the_backbone_on_lapped_plates(mode, friction, top):
     """Thin laps open and slip at single points: 1 % of the damping up to 100 m/s2, within the stated error."""
     study = Study.read(PLATES)
     sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
@@ -143,10 +145,10 @@ def test_levels_are_those_of_the_backbone_on_lapped_plates(mode):
         study,
         geometry=replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes),
         preloads=study.preloads[-1:],
-        joints=tuple(replace(joint, friction=0.2, form=Form()) for joint in study.joints),
+        joints=tuple(replace(joint, friction=friction, form=Form()) for joint in study.joints),
         modes=replace(study.modes, count=5, intervals=False),
     )
-    curve = faying.backbone(plan, mode, 0.2, (1.0, 100.0), rest_damping=0.0)
+    curve = faying.backbone(plan, mode, friction, (1.0, top), rest_damping=0.0)
     picked = np.flatnonzero(curve.damping > 1e-6)[::3]
     levels = tuple(float(curve.acceleration[k]) for k in picked)
     found = run(replace(plan, modes=replace(plan.modes, levels=levels)))

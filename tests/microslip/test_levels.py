@@ -103,3 +103,10 @@ def test_no_slip_is_no_damping():
     found = leveled(model).at([0.1, 10.0], 2)
     assert np.all(found.damping < 1e-12)
     assert 2 * np.pi * found.frequencies == pytest.approx(np.array([model.modes[0]] * 2), rel=1e-9)
+
+
+def test_a_mass_that_friction_alone_holds_has_no_answer_above_what_friction_can_bear():
+    """In phase with a motion x, a slider with limit F bears at most 4 F / pi: the inertia of a level above it wins."""
+    found = leveled(oscillator(slider(1.0, 0.5), spring=0.0)).at([0.3, 3.0], 1)
+    assert found.frequencies[0, 0] > 0
+    assert np.isnan([found.frequencies[1, 0], found.damping[1, 0], found.error[1, 0]]).all()

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol, final
 
-import numpy as np
-
 from faying.case.case import Case
 from faying.case.preloads import Preloads
 from faying.errors import InputError
@@ -32,14 +30,8 @@ class Engine(Protocol):
     def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
         """Real and complex modes with springs on the joints. Raises InputError where a part moves freely."""
 
-    def frequencies(self, springs: Sequence[Springs[Interface]], tolerance: float = RANGE_ERROR) -> Array:
-        """Frequencies [Hz] of the elastic modes with other springs.
-
-        tolerance: relative error of their squares that is allowed; an engine may be more exact.
-        """
-
-    def basis(self) -> Array:
-        """Vectors (unknowns, m), orthonormal with the mass, in which modes near the last ones can be found."""
+    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
+        """Frequencies [Hz] of the elastic modes with other springs, their squares to `RANGE_ERROR` or nearer."""
 
     def of(self, case: Case) -> "Engine":
         """The same for the case under another law or form, on the same mesh."""
@@ -63,7 +55,6 @@ class Direct:
             fixed=structure.fixed,
             solver=solver,
         )
-        self._shapes = np.zeros((structure.mesh.unknowns, 0))
 
     def preload(self, number: int) -> PreloadState:
         """See `Engine`."""
@@ -73,7 +64,6 @@ class Direct:
         """See `Engine`."""
         case, structure, choice = self.case, self.case.structure, self.case.study.modes
         modes, stiffness = self._modes(springs)
-        self._shapes = modes.shapes
         check_motions(structure, modes)
         loss = structure.joint_loss(springs, viscous=choice.damping == "viscous")
         damped = damped_modes(
@@ -88,14 +78,10 @@ class Direct:
         )
         return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
 
-    def frequencies(self, springs: Sequence[Springs[Interface]], tolerance: float = RANGE_ERROR) -> Array:
+    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
         """See `Engine`."""
         modes, _ = self._modes(springs)
         return modes.frequencies[self.case.rigid_count :][: self.case.study.modes.count]
-
-    def basis(self) -> Array:
-        """See `Engine`: the modes of the last springs."""
-        return self._shapes
 
     def of(self, case: Case) -> "Direct":
         """See `Engine`."""
@@ -136,18 +122,13 @@ class Reanalysis:
         """See `Engine`."""
         return vibrate(self.case.modal, springs, self._preloads.problem, self._shared)
 
-    def frequencies(self, springs: Sequence[Springs[Interface]], tolerance: float = RANGE_ERROR) -> Array:
+    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
         """See `Engine`."""
         if not self._looked and self._shared.near is not None:
             self._shared.near.look_everywhere()
             self._looked = True
-        modes, _ = self._shared.of(self.case.modal, springs, tolerance=tolerance, shapes=False)
+        modes, _ = self._shared.of(self.case.modal, springs, tolerance=RANGE_ERROR, shapes=False)
         return modes.frequencies[self.case.rigid_count :][: self.case.study.modes.count]
-
-    def basis(self) -> Array:
-        """See `Engine`: all that the states so far have made of it."""
-        assert self._shared.near is not None
-        return self._shared.near.span.vectors
 
     def of(self, case: Case) -> "Reanalysis":
         """See `Engine`; the factorisation at hand serves the other case, too."""

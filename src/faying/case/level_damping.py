@@ -1,7 +1,7 @@
 """Damping and frequency of every mode at levels of acceleration, with what is not known of friction and of rest."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,7 +9,9 @@ from faying.case.case import Case
 from faying.errors import InputError
 from faying.joint.equilibrium import PreloadState
 from faying.joint.state import Vibration
-from faying.microslip.levels import AtLevels, LevelModel, cut_laws, level_model
+from faying.microslip.level_basis import level_basis
+from faying.microslip.levels import SPRINGS, AtLevels, cut_laws, level_model
+from faying.microslip.microslip import Microslip
 from faying.notes import Note
 from faying.typing import Array
 
@@ -19,9 +21,8 @@ FRICTION = (0.03, 0.12, 0.5)
 # damping ratio at rest of bolted structures of which nothing is measured: measured are 0.034 and 0.087 % on the
 # Brake-Reuss beam, 0.10 and 0.13 % on another of its kind by ring-down
 REST = (3e-4, 1e-3, 3e-3)
-EXTRA_MODES = 150  # of the basis, beyond those asked for, in which a mode is found again
 SLIGHT = 0.1  # of the spread at rest: slip below it moves the low end by 0.005 of that spread, whatever friction is
-# into which a law is cut for the ends of friction: they differ by factors, this changes a hundredth
+# into which a law is cut for the basis, and for the ends of friction: they differ by factors, this changes a hundredth
 SPRINGS_AT_ENDS = 12
 
 
@@ -44,42 +45,49 @@ class LevelDamping:
     error: Array
 
 
-def can_slip(case: Case) -> bool:
-    """Whether levels are asked for, and no joint has springs per node, which do not slip."""
-    return bool(case.study.modes.levels) and not any(joint.per_node for joint in case.structure.joints)
-
-
-def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Array) -> LevelDamping | None:
+def level_damping(case: Case, preload: PreloadState, found: Vibration) -> LevelDamping | None:
     """Damping at the levels of a case under one preload.
 
     Args:
         case: the case.
         preload: its equilibrium.
         found: its modes at rest; a loss that the laws predict counts as damping at rest, else that has its prior.
-        basis: modes and directions near them (unknowns, m), orthonormal with the mass.
 
     Returns:
         None where no level is asked for, or where a law has no stiffness that slips.
     """
     structure, choice = case.structure, case.study.modes
-    if not can_slip(case):
+    # springs per node do not slip
+    if not choice.levels or any(joint.per_node for joint in structure.joints):
         return None
-    given = [joint.friction for joint in structure.joints]
+    assumed = any(joint.friction is None for joint in structure.joints)
+
+    def laws(friction: float, springs: int) -> list[Microslip]:
+        """Cut the law of each joint; friction: where nothing is said of it."""
+        given = [friction if joint.friction is None else joint.friction for joint in structure.joints]
+        return cut_laws(structure, preload, given, springs)
+
     try:
-        model = level_model(structure, preload, basis, [FRICTION[1] if mu is None else mu for mu in given])
+        coarse = [laws(friction, SPRINGS_AT_ENDS) for friction in FRICTION]
+        middle_laws = laws(FRICTION[1], SPRINGS)
     except InputError:
         return None
-    model = model.lowest(min(basis.shape[1], case.rigid_count + choice.count + EXTRA_MODES))
-    middle = model.at(choice.levels, choice.count)
+    basis = level_basis(structure, preload, found, coarse[: 2 if assumed else 1], choice.levels, choice.count)
+
+    def at(laws: Sequence[Microslip]) -> AtLevels:
+        return level_model(structure, preload, basis, laws).at(choice.levels, choice.count)
+
+    middle = at(middle_laws)
     rest = (found.damped.loss_factors / 2,) * 3 if structure.predicts_loss else REST
     # a loss at rest moves the complex modes as well
     moved = found.damped.frequencies / found.modes.frequencies[case.rigid_count :][: choice.count]
     slip = least = most = middle.damping
-    if any(mu is None for mu in given):
-        ends = [_with_friction(model, case, preload, FRICTION[0]).damping, np.zeros_like(slip)]
+    if assumed:
+        ends = [at(coarse[0]).damping, np.zeros_like(slip)]
         if np.any(slip > SLIGHT * (rest[1] - rest[0])):
-            ends[1] = _with_friction(model, case, preload, FRICTION[2]).damping
-        least, most = (choose(slip, choose(*ends)) for choose in (np.minimum, np.maximum))
+            ends[1] = at(coarse[2]).damping
+        # where the least friction has no answer the greatest damping is not known
+        least, most = np.fmin(slip, np.fmin(*ends)), np.maximum(slip, np.maximum(*ends))
     # friction and rest are independent: the squares of their distances add, apart for each side
     return LevelDamping(
         frequencies=middle.frequencies * moved,
@@ -89,16 +97,6 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration, basis: Ar
         slip=slip,
         error=middle.error,
     )
-
-
-def _with_friction(model: LevelModel, case: Case, preload: PreloadState, friction: float) -> AtLevels:
-    """The same with another friction at the joints of which nothing is said, and laws cut into fewer springs."""
-    structure = case.structure
-    given = [friction if joint.friction is None else joint.friction for joint in structure.joints]
-    laws = cut_laws(structure, preload, given, SPRINGS_AT_ENDS)
-    joints = tuple(replace(joint, law=law) for joint, law in zip(model.slip.joints, laws, strict=True))
-    changed = replace(model, slip=replace(model.slip, joints=joints))
-    return changed.at(case.study.modes.levels, case.study.modes.count)
 
 
 def _why_none(case: Case) -> str:
@@ -122,6 +120,7 @@ def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool
         return []
     if any(one is None for one in found):
         return [Note(code="no-level-damping", text=_why_none(case))]
+    notes = _unanswered(case, [one for one in found if one is not None])
     words = []
     if any(joint.friction is None for joint in case.structure.joints):
         words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")
@@ -129,8 +128,21 @@ def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool
         low, middle, high = (f"{100 * one:g}" for one in REST)
         words.append(f"{middle} % at rest, between {low} and {high} %, as bolted structures have it")
     if not words:
-        return []
+        return notes
     text = (
         f"damping at levels of acceleration assumes {' and '.join(words)}; a ring-down of the structure narrows it most"
     )
-    return [Note(code="level-damping", text=text)]
+    return [*notes, Note(code="level-damping", text=text)]
+
+
+def _unanswered(case: Case, found: Sequence[LevelDamping]) -> list[Note]:
+    """Which modes have no damping, or no upper end of it, at which levels."""
+    missing = np.argwhere(np.any([np.isnan(one.high) for one in found], axis=0))
+    if not len(missing):
+        return []
+    where = ", ".join(f"mode {k + 1} at {case.study.modes.levels[i]:g} m/s2" for i, k in missing)
+    text = (
+        f"{where}: no damping, or no upper end of it ({FRICTION[0]:g} is the least friction where none is given); "
+        "friction does not hold the joints against the inertia of the parts; ask for smaller levels, or pull harder"
+    )
+    return [Note(code="no-level-answer", text=text)]

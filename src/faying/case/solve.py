@@ -1,18 +1,18 @@
 """One load of a case: the preload of its joints, their springs, the modes and the response."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from faying.case.above_range import AboveRange, bonded_above_range
 from faying.case.case import Case, Progress
 from faying.case.ends import Pair, ends_of
 from faying.case.engine import Engine
-from faying.case.level_damping import LevelDamping, can_slip, level_damping
+from faying.case.level_damping import LevelDamping, level_damping
 from faying.case.response import LoadedStructure, ResponseAtLoad
 from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
 from faying.joint.springs import Springs
-from faying.joint.state import Vibration, law_notes
+from faying.joint.state import law_notes
 from faying.joint.strength import pressure_notes
 from faying.joint.structure import Structure
 from faying.measured.model import FullResponse
@@ -20,9 +20,6 @@ from faying.notes import Note
 from faying.numerics.damped import DampedModes
 from faying.numerics.modes import Modes
 from faying.typing import Array, Mask
-
-SOFTENED = (0.3, 0.1)  # of k_t: joints that slip
-SHAPE_ERROR = 1e-5  # of squared frequencies: shapes are then right to its root, and damping by slip to twice that
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,7 +94,7 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     return LoadedCase(
         load=load,
         ends=ends_of(case, preload, engine) if ranges else None,
-        levels=_levels(case, preload, found, engine, springs) if ranges else None,
+        levels=level_damping(case, preload, found) if ranges else None,
         preload=preload,
         springs=springs,
         modes=modes,
@@ -114,17 +111,6 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
         outside_share=_outside(structure, springs),
         above_range_share=_share(springs, [j.above_range(s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
-
-
-def _levels(
-    case: Case, preload: PreloadState, found: Vibration, engine: Engine, springs: Sequence[Springs[Interface]]
-) -> LevelDamping | None:
-    """Damping at levels, in a basis with the modes of joints that slip: softened ones, exact enough for shapes."""
-    if not can_slip(case):
-        return None
-    for share in SOFTENED:
-        engine.frequencies([replace(one, k_t=share * one.k_t) for one in springs], SHAPE_ERROR)
-    return level_damping(case, preload, found, engine.basis())
 
 
 def _responses(

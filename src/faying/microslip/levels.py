@@ -7,7 +7,7 @@ together.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,13 +16,17 @@ from faying.joint.equilibrium import PreloadState
 from faying.joint.structure import Structure
 from faying.microslip.microslip import Microslip
 from faying.microslip.slip_model import SlipModel, slip_joints
-from faying.numerics.product import product
+from faying.numerics.span import Span
 from faying.typing import Array
 
 PASSES = 40
-EVEN = 2  # passes after which a change of the secant stiffnesses, and from the first on one of the lag, is halved:
-HALF = 0.5  # undamped, the two drive each other away from the answer where most of a joint slides
-TOLERANCE = 1e-4  # relative change of the squared frequency, and a tenth of that of the damping, that ends the passes
+HALF = 0.5  # of a change of secants under which the mode would soften too much, and of the first change of the lag
+# share of a change of secants and lag from the third pass on, by Aitken's rule: undamped, the two drive each other away
+# from the answer where most of a joint slides, and damped by a half alone they take twice as many passes
+SHARES = 0.25, 1.0
+# relative change of the squared frequency, and a tenth of that of the damping, that ends the passes: what is left then
+# is as much, and 1e-4 of a damping is below its last printed digit
+TOLERANCE = 3e-5
 HARMONICS = 3  # highest of the motion that follows the first one
 # error of the damping over the root of the relative change of the squared frequency: a shape changes by that root, of
 # which the basis misses a part; covers the difference to harmonic balance on blocks, plates and a beam
@@ -35,6 +39,11 @@ SLIGHT = 1e-5  # relative change of the squared frequency that needs no second p
 MIN_MOTION = 1e-3  # of the greatest motion of a joint's points: what moves less keeps its stiffness at rest
 SAMPLES = 32  # instants of a cycle
 SPRINGS = 32  # into which a law is cut at each point
+# of the squared frequency that is left after a pass, at least: a level gives the acceleration, so that a joint which
+# softens moves more; fewer stiffnesses are changed at a time until the mode keeps that much
+MIN_LEFT = 0.25
+MIN_SQUARED = 0.01  # of the squared frequency at rest, below which the joints do not hold the mode: it has no answer
+MIN_SHARE = 1 / 64  # of a change of the secant stiffnesses, below which the mode has no answer at a level
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,11 +55,32 @@ class AtLevels:
         damping: ratio of slip [-] (l, m).
         error: of the damping, over it [-] (l, m): its change in the last pass, what the basis may miss of a shape, and
             what a mode near twice or three times the frequency may add; at most 1.
+
+    NaN where a mode has no answer at a level: its joints would slide without end.
     """
 
     frequencies: Array
     damping: Array
     error: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelCycle:
+    """The cycle of one mode at one level.
+
+    Args:
+        frequency: [Hz]; NaN, as damping and error, where there is no answer.
+        damping: ratio of slip [-].
+        error: of the damping, over it [-].
+        motion: Fourier coefficients of the coordinates (1 + 2H, m) [m] in the last pass.
+        traction: those of the tractions of each joint (1 + 2H, q, 3) [Pa] under that motion.
+    """
+
+    frequency: float
+    damping: float
+    error: float
+    motion: Array
+    traction: tuple[Array, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,57 +97,87 @@ class LevelModel:
     vectors: Array
     rigid: int
 
-    def lowest(self, count: int) -> "LevelModel":
-        """The same on its lowest modes (count,), rigid ones included."""
-        _, shapes = self.slip.modes
-        shapes = shapes[:, :count]
-        return replace(self, slip=self.slip.turned(shapes), vectors=self.vectors @ shapes)
-
     def at(self, levels: Sequence[float], count: int) -> AtLevels:
         """The lowest elastic modes, so many, at each level: acceleration [m/s2] of the point that moves most."""
-        numbers = range(self.rigid, self.rigid + count)
-        greatest = self._greatest(self.slip.modes[1][:, numbers])
-        found = np.array([[self._mode(a, k, far) for k, far in zip(numbers, greatest, strict=True)] for a in levels])
-        frequency, damping, error = np.moveaxis(found, 2, 0)
+        found = [[self.cycle(level, k) for k in range(count)] for level in levels]
+        frequency, damping, error = (
+            np.array([[getattr(one, name) for one in row] for row in found])
+            for name in ("frequency", "damping", "error")
+        )
         return AtLevels(frequencies=frequency, damping=damping, error=error)
 
-    def _mode(self, level: float, number: int, greatest: float) -> tuple[float, float, float]:
-        """Frequency [Hz], damping of slip and its error, of one mode; greatest: motion of a node in its shape."""
+    def cycle(self, level: float, number: int) -> LevelCycle:
+        """One elastic mode, counted from 0, at one level [m/s2]."""
         speeds, shapes = self.slip.modes
+        number += self.rigid
         speed, shape = float(speeds[number]), shapes[:, number]
         rest, damping, error, softened = shape, 0.0, 0.0, (speeds, shapes)
         motion = np.zeros((1 + 2 * HARMONICS, len(shape)))
-        secants: list[Array] = []
-        near = 0.0
+        secants = [np.zeros_like(joint.at_rest[1]) for joint in self.slip.joints]
+        near, share = 0.0, 1.0
+        missed: Array | None = None
         for done in range(PASSES):
-            amplitude = level / speed**2 / greatest
+            amplitude = level / speed**2 / self._greatest(shape)
             motion[1] = amplitude * shape
-            forces = self.slip.forces(motion, derivative=False, samples=SAMPLES)
+            marched, forces = motion.copy(), self.slip.forces(motion, derivative=False, samples=SAMPLES)
             cycles = forces.cycles
             lost = sum(float(j.weights @ c.dissipated) for j, c in zip(self.slip.joints, cycles, strict=True))
             before, damping = damping, max(lost, 0.0) / (2 * np.pi * speed**2 * amplitude**2)
             error = abs(damping - before) / damping if damping > 0 else 0.0
-            last, secants = secants, self._secants(motion, cycles)
-            squared = speed**2
+            wanted, squared = self._secants(motion, cycles), speed**2
             # change of the squared frequency, to first order
-            softer = sum(j.work(c, motion[1]) for j, c in zip(self.slip.joints, secants, strict=True)) / amplitude**2
+            softer = sum(j.work(c, motion[1]) for j, c in zip(self.slip.joints, wanted, strict=True)) / amplitude**2
             if done == 0 and abs(softer) < SLIGHT * squared:
                 speed, error = float(np.sqrt(squared + softer)), abs(softer) / squared
                 break
-            if done >= EVEN:
-                secants = [HALF * (one + other) for one, other in zip(last, secants, strict=True)]
-            near = self._follow(motion, forces.force, speed, damping, softened) / amplitude
-            softened, like = self._under(secants, rest)
+            before_missed, missed = missed, _diagonals(wanted) - _diagonals(secants)
+            if before_missed is not None:
+                share = _aitken(share, before_missed, missed)
+            lag_share = HALF if before_missed is None else share
+            near = self._follow(motion, forces.force, speed, damping, softened, lag_share) / amplitude
+            least = max(MIN_LEFT * squared, MIN_SQUARED * float(speeds[number]) ** 2)
+            found = self._towards(wanted, secants, rest, least=least, share=share)
+            if found is None:
+                speed = damping = error = np.nan
+                break
+            secants, softened, like = found
             speed, shape = float(softened[0][like]), softened[1][:, like]
             if abs(speed**2 - squared) < TOLERANCE * squared and error < 10 * TOLERANCE:
                 break
-            greatest = float(self._greatest(shape[:, None])[0])
         lower = max(1 - (speed / float(speeds[number])) ** 2, 0.0)
         error += ERROR_OF_SHAPE * float(np.sqrt(lower)) + ERROR_OF_NEAR_MODE * near
-        return speed / (2 * np.pi), damping, min(error, 1.0)
+        return LevelCycle(
+            frequency=speed / (2 * np.pi),
+            damping=damping,
+            error=min(error, 1.0) if np.isfinite(speed) else np.nan,
+            motion=marched,
+            traction=tuple(cycle.traction for cycle in cycles),
+        )
+
+    def _towards(
+        self, wanted: Sequence[Array], last: Sequence[Array], rest: Array, *, least: float, share: float
+    ) -> tuple[list[Array], tuple[Array, Array], int] | None:
+        """Change secant stiffnesses by a share of what is wanted, or by less where the mode would soften too much.
+
+        Args:
+            wanted, last: `_secants` of this pass, and those under which the mode was marched.
+            rest: shape (m,) of the mode at rest.
+            least: squared circular frequency [rad2/s2] that must be left.
+            share: of the change [-], to begin with.
+
+        Returns:
+            The secants, and what `_under` has of them; None where no share that counts leaves the mode a frequency.
+        """
+        while share >= MIN_SHARE:
+            secants = [(1 - share) * old + share * new for old, new in zip(last, wanted, strict=True)]
+            softened, like = self._under(secants, rest)
+            if softened[0][like] ** 2 > least:
+                return secants, softened, like
+            share *= HALF
+        return None
 
     def _follow(
-        self, motion: Array, force: Array, speed: float, damping: float, softened: tuple[Array, Array]
+        self, motion: Array, force: Array, speed: float, damping: float, softened: tuple[Array, Array], share: float
     ) -> float:
         """Correct a motion in place by what it leaves of its equations: mean, lag and higher harmonics.
 
@@ -125,6 +185,7 @@ class LevelModel:
             motion, force: of the cycle (1 + 2H, m) [m], [N]; the cosine of the first harmonic stays.
             speed, damping: circular frequency of the mode [rad/s] and its ratio [-]: negative damping keeps it going.
             softened: circular frequencies [rad/s] (m,) and shapes (m, m) under the secants, in which the lag is found.
+            share: of the correction of the lag [-].
 
         Returns:
             The greatest motion of a mode [m] that a harmonic near it would have: such modes are left out.
@@ -140,17 +201,16 @@ class LevelModel:
             stiff = speeds**2 - driven
             # a mode whose own speed is near that of the harmonic is left out
             flexible = np.where(np.abs(stiff) > MET * driven, 1 / np.where(stiff == 0, 1.0, stiff), 0.0)
-            motion[rows] -= (HALF if harmonic == 1 else 1.0) * (left @ shapes * flexible) @ shapes.T
+            motion[rows] -= (share if harmonic == 1 else 1.0) * (left @ shapes * flexible) @ shapes.T
             if harmonic > 1:
                 stiff = np.abs(softened[0][self.rigid :] ** 2 - driven)
                 moved = np.linalg.norm(left @ softened[1][:, self.rigid :], axis=0) / np.maximum(stiff, 1e-9 * driven)
                 near = max(near, float(moved[stiff <= MET * driven].max(initial=0.0)))
         return near
 
-    def _greatest(self, shapes: Array) -> Array:
-        """The greatest displacement of a node (k,) in each of several shapes (m, k)."""
-        moved = (self.vectors @ shapes).reshape(-1, 3, shapes.shape[1])
-        return np.asarray(np.sqrt(np.einsum("nik,nik->nk", moved, moved).max(axis=0)))
+    def _greatest(self, shape: Array) -> float:
+        """The greatest displacement of a node in a shape (m,)."""
+        return float(np.linalg.norm((self.vectors @ shape).reshape(-1, 3), axis=1).max())
 
     def _secants(self, motion: Array, cycles: Sequence[Any]) -> list[Array]:
         """What secant stiffnesses at the points of each joint (q, 3, 3) change of those at rest [Pa/m]."""
@@ -182,6 +242,21 @@ class LevelModel:
         return (np.sqrt(np.maximum(squared, 0.0)), shapes), int(np.argmax(like))
 
 
+def _diagonals(secants: Sequence[Array]) -> Array:
+    """The changes of stiffness at all points of all joints, which are diagonal (q, 3, 3), in one row."""
+    return np.concatenate([np.einsum("qii->qi", one).ravel() for one in secants])
+
+
+def _aitken(share: float, before: Array, now: Array) -> float:
+    """Share of the next change, from the last one and from what was wanted before and after it (n,).
+
+    Source: Aitken's relaxation, Kuettler and Wall 2008, doi:10.1007/s00466-008-0255-5, equation 43.
+    """
+    change = now - before
+    square = float(change @ change)
+    return float(np.clip(-share * float(before @ change) / square, *SHARES)) if square > 0 else share
+
+
 def cut_laws(structure: Structure, preload: PreloadState, friction: Sequence[float], springs: int) -> list[Microslip]:
     """The law of each joint under a preload, cut into so many springs with sliders; friction: coefficient of each.
 
@@ -193,22 +268,17 @@ def cut_laws(structure: Structure, preload: PreloadState, friction: Sequence[flo
     ]
 
 
-def level_model(structure: Structure, preload: PreloadState, vectors: Array, friction: Sequence[float]) -> LevelModel:
+def level_model(structure: Structure, preload: PreloadState, basis: Span, laws: Sequence[Microslip]) -> LevelModel:
     """A structure under its preload in a basis, ready to be marched.
 
     Args:
-        structure: with joints whose laws have a tangential stiffness.
+        structure: without springs per node on its joints.
         preload: its equilibrium under the bolts.
-        vectors: the basis (unknowns, m), orthonormal with the mass: modes and directions near them.
-        friction: coefficient [-] of each joint, 0 or more.
-
-    Raises:
-        InputError: a law without stiffness, or a joint that is wholly open.
+        basis: orthonormal with the mass, with the stiffness of the parts projected on it; rigid motions first.
+        laws: of each joint under that preload.
     """
-    interfaces = [joint.interface for joint in structure.joints]
+    interfaces, vectors = [joint.interface for joint in structure.joints], basis.vectors
     relatives = [np.asarray(interface.relative @ vectors) for interface in interfaces]
-    laws = cut_laws(structure, preload, friction, SPRINGS)
     joints = slip_joints(interfaces, preload.displacement, laws, relatives)
-    parts = vectors.T @ product(structure.dynamic_matrices[0], vectors)
-    slip = SlipModel(stiffness=(parts + parts.T) / 2, mass=np.eye(vectors.shape[1]), joints=joints)
+    slip = SlipModel(stiffness=basis.small, mass=np.eye(vectors.shape[1]), joints=joints)
     return LevelModel(slip=slip, vectors=vectors, rigid=structure.rigid_count)

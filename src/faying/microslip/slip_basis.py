@@ -18,10 +18,11 @@ from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.microslip.epmc import ALL_SLIDING, OTHER_MODES, Epmc, EpmcPoint
 from faying.microslip.microslip import Microslip
-from faying.microslip.slip_model import SlipModel, slip_joints
+from faying.microslip.slip_model import SlipJoint, SlipModel, slip_joints
 from faying.numerics.basis import Basis
 from faying.numerics.modal_reanalysis import nearby_modes
 from faying.numerics.modes import Modes
+from faying.numerics.product import product
 from faying.typing import Array
 
 TANGENTIAL = (0.3, 0.1, 0.03, 0.01)  # of k_t: joints that slip
@@ -167,19 +168,15 @@ class SlipBasis:
         The second (unknowns, 1 + 2H): one vector for each harmonic.
         """
         X = point.coordinates
-        motion = self.basis.vectors @ X.T
-        inertia = self.mass @ motion
-        left = self.stiffness @ motion
-        w, zeta = point.frequency, point.damping
-        for h in range(1, epmc.harmonics + 1):
-            c, s = 2 * h - 1, 2 * h
-            left[:, c] -= (h * w) ** 2 * inertia[:, c] + 2 * zeta * h * w**2 * inertia[:, s]
-            left[:, s] -= (h * w) ** 2 * inertia[:, s] - 2 * zeta * h * w**2 * inertia[:, c]
-        for interface, joint, found in zip(self.basis.interfaces, epmc.model.joints, point.traction, strict=True):
-            traction = found * joint.weights[:, None]
-            traction[0] -= joint.at_rest[0] * joint.weights[:, None]
-            left = left + interface.relative.T @ traction.reshape(len(X), -1).T
-        left[self.structure.fixed] = 0.0
+        left = unbalanced_forces(
+            self.structure,
+            self.basis.vectors,
+            epmc.model.joints,
+            motion=X,
+            traction=point.traction,
+            speed=point.frequency,
+            damping=point.damping,
+        )
         correction = self._answer(left)
         size = float(np.einsum("ij,jk,ik->", X, epmc.model.linear, X))
         return float(np.sqrt(max(np.einsum("ij,ij->", left, correction), 0.0) / size)), correction
@@ -240,3 +237,41 @@ class SlipBasis:
     def rows(self, columns: Array) -> Array:
         """What functionals (unknowns, k) give of the coordinates (k, m)."""
         return np.asarray(columns.T @ self.basis.vectors)
+
+
+def unbalanced_forces(
+    structure: Structure,
+    vectors: Array,
+    joints: Sequence[SlipJoint],
+    *,
+    motion: Array,
+    traction: Sequence[Array],
+    speed: float,
+    damping: float,
+) -> Array:
+    """What a cycle in a basis leaves in the full equations, (unknowns, 1 + 2H) [N].
+
+    K X_h - (h w)^2 M X_h - 2 zeta w^2 h M (i X_h) + B' t_h, with K of the parts and t_h the traction since the preload.
+
+    Args:
+        structure: the structure.
+        vectors: the basis (unknowns, m).
+        joints: its joints in that basis.
+        motion: Fourier coefficients of the coordinates (1 + 2H, m) [m]: mean, cos 1, sin 1, ...
+        traction: those of each joint (1 + 2H, q, 3) [Pa].
+        speed: circular frequency w [rad/s].
+        damping: ratio zeta [-], with which the cycle goes on for ever.
+    """
+    stiffness, mass = structure.dynamic_matrices
+    moved = vectors @ motion.T
+    left, inertia = product(stiffness, moved), product(mass, moved)
+    for h in range(1, len(motion) // 2 + 1):
+        c, s = 2 * h - 1, 2 * h
+        left[:, c] -= (h * speed) ** 2 * inertia[:, c] + 2 * damping * h * speed**2 * inertia[:, s]
+        left[:, s] -= (h * speed) ** 2 * inertia[:, s] - 2 * damping * h * speed**2 * inertia[:, c]
+    for fitted, joint, found in zip(structure.joints, joints, traction, strict=True):
+        since = found * joint.weights[:, None]
+        since[0] -= joint.at_rest[0] * joint.weights[:, None]
+        left += fitted.interface.relative.T @ since.reshape(len(motion), -1).T
+    left[structure.fixed] = 0.0
+    return left

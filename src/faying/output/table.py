@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from itertools import product
-from math import floor, log10
+from math import floor, isnan, log10
 from typing import Any
 
 import numpy as np
@@ -63,14 +63,16 @@ def damping(result: Result) -> Rows:
         return []
     heads = [*(f"{level:g} m/s2 [%]" for level in found.levels), "change of f [%]"]
     change = 100 * (found.frequencies[-1, -1] / result.frequencies[-1] - 1)
-    words = [f"{one:+.3f}" if abs(one) >= MIN_CHANGE else "0" for one in change]
+    words = ["-" if isnan(one) else f"{one:+.3f}" if abs(one) >= MIN_CHANGE else "0" for one in change]
     levels = range(len(found.levels))
     return by_mode(heads, ([*(damping_at(found, k, j) for k in levels), word] for j, word in enumerate(words)))
 
 
 def damping_at(found: DampedLevels, level: int, mode: int) -> str:
     """Low, median and high damping ratio [%] of a mode at one level, at the greatest preload."""
-    return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in (found.low, found.damping, found.high))
+    return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in (found.low, found.damping, found.high)).replace(
+        "nan", "-"
+    )
 
 
 def _five(value: float) -> str:

@@ -237,14 +237,14 @@ class RunRecord(Recorded):
     levels: Array | None = optional(
         "level", "m/s2", "peak acceleration of the point that moves most", "modes/level_acceleration"
     )
-    level_frequencies: Array | None = optional("load level mode", "Hz", "frequency at a level", "modes/")
+    level_frequencies: Array | None = optional("load level mode", "Hz", "frequency at a level", "modes/", gaps=True)
     level_damping: Array | None = optional(
-        "load level mode", "1", "damping ratio at a level", "modes/", shown="damping ratio"
+        "load level mode", "1", "damping ratio at a level", "modes/", shown="damping ratio", gaps=True
     )
-    level_low: Array | None = optional("load level mode", "1", "lower end of damping at a level", "modes/")
-    level_high: Array | None = optional("load level mode", "1", "upper end of damping at a level", "modes/")
-    level_slip: Array | None = optional("load level mode", "1", "damping by slip at a level", "modes/")
-    level_error: Array | None = optional("load level mode", "1", "error of damping by slip", "modes/")
+    level_low: Array | None = optional("load level mode", "1", "lower end of damping at a level", "modes/", gaps=True)
+    level_high: Array | None = optional("load level mode", "1", "upper end of damping at a level", "modes/", gaps=True)
+    level_slip: Array | None = optional("load level mode", "1", "damping by slip at a level", "modes/", gaps=True)
+    level_error: Array | None = optional("load level mode", "1", "error of damping by slip", "modes/", gaps=True)
     above_range_frequencies: Array | None = optional(
         "load mode", "Hz", "frequency with what is above the law's end bonded", "modes/frequency_bonded_above"
     )
