@@ -11,7 +11,7 @@ Index: TypeAlias = NDArray[np.int64]
 Mask: TypeAlias = NDArray[np.bool_]
 Sparse: TypeAlias = Any
 """A SciPy sparse matrix or array: SciPy ships no types, so that a checker cannot see into it."""
-AnyArray: TypeAlias = Any
-"""An array of NumPy, CuPy or another library that follows the array API standard."""
+AnyArray: TypeAlias = NDArray[Any]
+"""An array of floats in double or single precision, of complex numbers, truth values or indices."""
 Quantity: TypeAlias = Any
 """An array of numbers, or None where a model does not define it; a script that asks for one knows its model."""

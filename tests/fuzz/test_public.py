@@ -86,7 +86,7 @@ CALLS = {
     "solve_half_space": (
         faying.solve_half_space,
         {"heights": HEIGHTS, "spacing": 1e-6, "E_star": 1e11, "pressure": 1e7, "hardness": 2e9, "nu": 0.3}
-        | {"periodic": True, "tol": 1e-3, "workers": 1, "device": "cpu", "precision": "double"},
+        | {"periodic": True, "tol": 1e-3, "workers": 1, "precision": "double"},
     ),
     "Contact.plot": (CONTACT.plot, {"axes": None}),
     "Mates": (
@@ -115,7 +115,7 @@ CALLS = {
     "HalfSpace": (
         faying.HalfSpace,
         {"scan": SCAN, "pair": PAIR, "elastic": False, "stiffness": "unloading", "area": "corrected", "points": 8}
-        | {"shear_ratio": 0.1, "periodic": True, "lowest": 1e5, "highest": 1e7, "tol": 1e-3, "device": "cpu"},
+        | {"shear_ratio": 0.1, "periodic": True, "lowest": 1e5, "highest": 1e7, "tol": 1e-3},
     ),
     "CMY": (contact.CMY, {"h_rms": 1e-6, "mean_slope": 0.1, "pair": PAIR, "hardness": 2e9}),
     "Mikic": (contact.Mikic, {"h_rms": 1e-6, "mean_slope": 0.1, "pair": PAIR}),

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from faying.errors import InputError, NotConverged
 from faying.halfspace import solve_half_space
 from faying.halfspace import tangent as module
-from faying.halfspace.arrays import ArrayLibrary
+from faying.halfspace.arrays import Arithmetic
 from faying.halfspace.conjugate import CellSystem
 from faying.halfspace.kernels import shear_kernel
 
@@ -140,7 +140,7 @@ def test_impossible_slip_is_refused(X, mu, text):
 def test_what_is_said_of_the_error_of_a_stiffness_is_near_it(rough, share, monkeypatch):
     h = rough(96)
     kernel, touching = (
-        shear_kernel(h.shape, 1.0, 0.3, periodic=True, place=ArrayLibrary()),
+        shear_kernel(h.shape, 1.0, 0.3, periodic=True, arithmetic=Arithmetic()),
         h > np.quantile(h, 1 - share),
     )
     monkeypatch.setattr(module, "ENOUGH", 1e-13)

@@ -21,13 +21,13 @@ so it bounds the distance to the solution whatever the iteration did.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import isfinite
 from typing import Any, final
 
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.halfspace.arrays import at_places, dot, namespace, parts, total
+from faying.halfspace.arrays import dot, parts, total
 from faying.halfspace.cells import Cells
 from faying.halfspace.conjugate import CellSystem, constrained_gradients
 from faying.halfspace.kernels import Kernel
@@ -41,7 +41,6 @@ HALVES = (0.5, 0.25, 0.125)
 ROUNDS = ((0.3, 20), (0.3, 10), (0.3, 10))  # root of what the last turn may gain over all; most turns
 MIN_PROJECTED = 1e-3  # share of the cells cut off by the projection below which another round is not worth its price
 ROUNDING = 3e-7  # error of a product in single precision, over the largest displacement that it gives
-SAMPLE = 1 << 16
 
 
 @final
@@ -66,14 +65,12 @@ def _is_finite(bound: Bound) -> bool:
 
 
 def _least(a: AnyArray) -> float:
-    xp = namespace(a)
-    return min(float(xp.min(a[s])) for s in parts(a))
+    return min(float(np.min(a[s])) for s in parts(a))
 
 
 def _clip(v: AnyArray, lower: Bound, upper: Bound) -> None:
-    xp = namespace(v)
     for s in parts(v):
-        v[s] = xp.clip(v[s], _at(lower, s), _at(upper, s))
+        v[s] = np.clip(v[s], _at(lower, s), _at(upper, s))
 
 
 def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyArray, float]:
@@ -81,28 +78,27 @@ def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyA
 
     The point takes the place of v.
     """
-    xp = namespace(v)
     size = int(v.shape[0])
-    scale = max(abs(total), 0.0 if isinstance(upper, (int, float)) else float(xp.sum(xp.abs(upper))), 1e-300)
-    near = (1e-13 if v.dtype == xp.float64 else 1e-8) * scale
+    scale = max(abs(total), 0.0 if isinstance(upper, (int, float)) else float(np.sum(np.abs(upper))), 1e-300)
+    near = (1e-13 if v.dtype == np.float64 else 1e-8) * scale
 
     def look(shift: float) -> tuple[float, int]:
         """Sum of the clipped values, and how many stay off their bounds."""
         found, free = 0.0, 0
         for s in parts(v):
             moved, low, high = v[s] + shift, _at(lower, s), _at(upper, s)
-            found += float(xp.sum(xp.clip(moved, low, high), dtype=xp.float64))
-            free += int(xp.count_nonzero((moved > low) & (moved < high)))
+            found += float(np.sum(np.clip(moved, low, high), dtype=np.float64))
+            free += int(np.count_nonzero((moved > low) & (moved < high)))
         return found, free
 
     shift, (found, free) = 0.0, look(0.0)
     if abs(total - found) <= near:
         _clip(v, lower, upper)
         return v, 0.0  # a shift of rounding size would lift every cell off its bound
-    low = min(float(xp.min(_at(lower, s) - v[s])) for s in parts(v))
+    low = min(float(np.min(_at(lower, s) - v[s])) for s in parts(v))
     high = total / size - _least(v)
     if _is_finite(upper):
-        high = max(float(xp.max(_at(upper, s) - v[s])) for s in parts(v))
+        high = max(float(np.max(_at(upper, s) - v[s])) for s in parts(v))
     shift = min(max((total - found) / size, low), high)
     for turn in range(200):
         found, free = look(shift)
@@ -124,33 +120,15 @@ def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyA
 
 def duality_gap(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound, level: float) -> float:
     """The bound on the energy's excess at level d (module text)."""
-    xp = namespace(x)
     bounded, gap, least = _is_finite(upper), 0.0, 0.0
     for s in parts(x):
         G = gradient[s] + level
-        gap += total((x[s] - _at(lower, s)) * xp.maximum(G, 0.0))
+        gap += total((x[s] - _at(lower, s)) * np.maximum(G, 0.0))
         if bounded:
-            gap += total((_at(upper, s) - x[s]) * xp.maximum(-G, 0.0))
+            gap += total((_at(upper, s) - x[s]) * np.maximum(-G, 0.0))
         else:
-            least = min(least, float(xp.min(G)))
+            least = min(least, float(np.min(G)))
     return np.inf if least < 0 else gap
-
-
-def _in_order(a: AnyArray, place: int) -> float:
-    """The value that stands at this place of the array in order, by ordering what a sample leaves in question."""
-    xp, size = namespace(a), int(a.shape[0])
-    if size > 4 * SAMPLE:
-        sample = a[:: size // SAMPLE | 1]  # an odd step: rows are often as long as a power of two
-        count = int(sample.shape[0])
-        middle = place * count // size
-        for far in (1000, 10_000):
-            low, high = at_places(sample, [max(middle - far, 0), min(middle + far, count - 1)])
-            low, high = -inf if middle < far else low, inf if middle + far >= count else high
-            below = sum(int(xp.count_nonzero(a[s] < low)) for s in parts(a))
-            between = xp.concat([a[s][(a[s] >= low) & (a[s] <= high)] for s in parts(a)])
-            if below <= place < below + int(between.shape[0]):
-                return at_places(between, [place - below])[0]
-    return at_places(a, [place])[0]
 
 
 def best_level(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound) -> float:
@@ -158,17 +136,18 @@ def best_level(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound) -> f
 
     Without a free cell the gap is least where the cells with G < 0 could carry, at their upper bounds, what x carries.
     """
-    xp, size = namespace(x), int(x.shape[0])
+    size = int(x.shape[0])
     if isinstance(upper, (int, float)) and isinstance(lower, (int, float)):
         if not isfinite(upper):
             return -_least(gradient)
-        return -_in_order(gradient, min(int((total(x) - size * lower) / (upper - lower)), size - 1))
+        place = min(int((total(x) - size * lower) / (upper - lower)), size - 1)
+        return -float(np.partition(gradient, place)[place])
     free = (x > lower) & (x < upper)
-    if bool(xp.any(free)):
-        return -float(xp.mean(gradient[free]))
-    order = xp.argsort(gradient)
-    room = xp.cumulative_sum(xp.asarray(upper - lower)[order])
-    at = int(xp.searchsorted(room, xp.asarray(total(x - lower), dtype=room.dtype)))
+    if bool(np.any(free)):
+        return -float(np.mean(gradient[free]))
+    order = np.argsort(gradient)
+    room = np.cumulative_sum(np.asarray(upper - lower)[order])
+    at = int(np.searchsorted(room, np.asarray(total(x - lower), dtype=room.dtype)))
     return -float(gradient[order[min(at, size - 1)]])
 
 
@@ -195,22 +174,22 @@ class Problem:
     ) -> tuple[AnyArray, float]:
         """A x - b + level (in `out`), and the largest displacement; without `precise` a product in single precision."""
         kernel = self.kernel
-        xp, width = kernel.place.xp, kernel.shape[1]
+        width = kernel.shape[1]
         pieces = [slice(rows.start * width, rows.stop * width) for rows in kernel.rows]
-        out = xp.empty(x.shape[0], dtype=x.dtype) if out is None else out
+        out = np.empty(x.shape[0], dtype=x.dtype) if out is None else out
         largest = 0.0
-        work = xp.float64 if precise else xp.float32
+        work = np.float64 if precise else np.float32
 
         def read(_: int, i: int) -> AnyArray:
-            return xp.reshape(xp.astype(x[pieces[i]], work, copy=False), (-1, width))
+            return np.reshape(np.astype(x[pieces[i]], work, copy=False), (-1, width))
 
         def write(_: int, i: int, block: AnyArray) -> None:
             nonlocal largest
-            here = xp.reshape(block, (-1,))
-            largest = max(largest, float(xp.max(xp.abs(here))))
-            load = xp.astype(self.load[pieces[i]], xp.float64, copy=False)
+            here = np.reshape(block, (-1,))
+            largest = max(largest, float(np.max(np.abs(here))))
+            load = np.astype(self.load[pieces[i]], np.float64, copy=False)
             here = here + (self.datum / self.unit + level - load / self.unit)
-            out[pieces[i]] = xp.astype(here, x.dtype, copy=False)
+            out[pieces[i]] = np.astype(here, x.dtype, copy=False)
 
         kernel.stream(kernel.symbol if precise else kernel.symbol_single, read, write)
         return out, largest
@@ -231,7 +210,7 @@ class _Search:
 
     def __init__(self, problem: Problem) -> None:
         self.problem, self.kernel = problem, problem.kernel
-        self.xp, self.real = problem.kernel.place.xp, problem.kernel.place.real
+        self.real = problem.kernel.arithmetic.real
         self.lower, self.upper = problem.lower, problem.upper
         self.total, self.scale = problem.mean * problem.load.shape[0], problem.scale
         self.pace = 1 / self.kernel.own
@@ -242,20 +221,6 @@ class _Search:
         self.datum = 0.0
         self.g: AnyArray = problem.load  # until `run`
         self.doubt = 0.0  # what single precision may have left in g
-        self._spare: list[AnyArray] = []  # to be written anew: memory that is given back costs time to get again
-
-    def _empty(self) -> AnyArray:
-        """An array like x, with any content."""
-        return self._spare.pop() if self._spare else self.xp.empty(self.x.shape[0], dtype=self.real)
-
-    def _over(self, *arrays: AnyArray) -> None:
-        """Keep for `_empty` what is neither x nor g."""
-        self._spare += [a for a in arrays if a is not self.x and a is not self.g]
-
-    def _take(self, x: AnyArray, g: AnyArray) -> None:
-        """Let these be x and g."""
-        old, self.x, self.g = (self.x, self.g), x, g
-        self._over(*old)
 
     def refresh(self, level: float, *, precise: bool) -> None:
         """Make the gradient from x alone."""
@@ -267,20 +232,20 @@ class _Search:
     def _imbalance(self) -> float:
         """Miss of the total, which steps leave at rounding; relative, and nothing below what that is."""
         miss = abs(total(self.x) - self.total) / max(abs(self.total), 1e-300)
-        return miss if miss > (1e-10 if self.real == self.xp.float64 else 1e-6) else 0.0
+        return miss if miss > (1e-10 if self.real == np.float64 else 1e-6) else 0.0
 
     def measured(self) -> tuple[float, float]:
         """The level and the residual of this x and g."""
         level = best_level(self.x, self.g, self.lower, self.upper)
-        size = max(abs(self.total), sum(total(self.xp.abs(self.x[s])) for s in parts(self.x))) * self.scale
+        size = max(abs(self.total), sum(total(np.abs(self.x[s])) for s in parts(self.x))) * self.scale
         gap = duality_gap(self.x, self.g, self.lower, self.upper, level)
         return level, max(gap / size, self._imbalance())
 
     def run(self, tol: float, start: Start | None, least: int, progress: Progress | None) -> Minimum:
         n = self.problem.load.shape[0]
-        first = self.xp.full(n, self.total / n, dtype=self.real) if start is None else start()
+        first = np.full(n, self.total / n, dtype=self.real) if start is None else start()
         self.x = project(first, self.lower, self.upper, self.total)[0]
-        self.g = self._empty()
+        self.g = np.empty(n, dtype=self.real)
         self.refresh(0.0, precise=False)
         stuck, best, since = False, np.inf, 0
         for step in range(STEPS + 1):
@@ -309,7 +274,7 @@ class _Search:
             if inside == 0 or stuck or (self.bounded and (step == 0 or at_upper >= inside)):
                 shift = self._gradient_step(once=step == 0)
             stuck = not self._newton_step(shift)
-        remedy = "smooth the map" if self.kernel.place.precision == "double" else 'precision="double"'
+        remedy = "smooth the map" if self.kernel.arithmetic.precision == "double" else 'precision="double"'
         raise NotConverged(
             f"half-space contact: residual {best:.1e} after {step} steps, above the tolerance {tol:.1e}; "
             f"ask for a larger tol, or {remedy}"
@@ -320,16 +285,16 @@ class _Search:
         inside = at_upper = 0
         for s in parts(self.x):
             x = self.x[s]
-            inside += int(self.xp.count_nonzero((x > _at(self.lower, s)) & (x < _at(self.upper, s))))
-            at_upper += int(self.xp.count_nonzero(x >= _at(self.upper, s))) if self.bounded else 0
+            inside += int(np.count_nonzero((x > _at(self.lower, s)) & (x < _at(self.upper, s))))
+            at_upper += int(np.count_nonzero(x >= _at(self.upper, s))) if self.bounded else 0
         return inside, at_upper
 
     def _gradient_step(self, *, once: bool) -> float:
         """Step along the projected gradient, shortened until the energy falls; returns the level it used."""
-        xp, pace, level = self.xp, self.pace, 0.0
-        every = Cells(self.kernel, xp.ones(self.x.shape[0], dtype=xp.bool))
+        pace, level = self.pace, 0.0
+        every = Cells(self.kernel, np.ones(self.x.shape[0], dtype=np.bool))
         for _ in range(1 if once else 12):
-            y = self._empty()
+            y = np.empty_like(self.x)
             for s in parts(y):
                 y[s] = self.x[s] - pace * self.g[s]
             y, shift = project(y, self.lower, self.upper, self.total)
@@ -344,9 +309,8 @@ class _Search:
                 for s in parts(y):
                     y[s] += self.x[s]
                 _clip(y, self.lower, self.upper)
-                self._take(y, g)
+                self.x, self.g = y, g
                 break
-            self._over(y, g)
             if curvature <= 0:
                 break
             pace *= min(max(-down / curvature, 0.1), 0.7)
@@ -354,8 +318,7 @@ class _Search:
 
     def _working(self, level: float) -> AnyArray:
         """The cells between their bounds, or at one and pressed off it."""
-        xp = self.xp
-        out = xp.empty(self.x.shape[0], dtype=xp.bool)
+        out = np.empty(self.x.shape[0], dtype=np.bool)
         for s in parts(self.x):
             x, g, lower, upper = self.x[s], self.g[s], _at(self.lower, s), _at(self.upper, s)
             working = ((x > lower) & (x < upper)) | ((x <= lower) & (g < -level))
@@ -372,7 +335,7 @@ class _Search:
         for s in parts(self.x):
             x = self.x[s]
             free = (x > _at(self.lower, s)) & (x < _at(self.upper, s))
-            count += int(self.xp.count_nonzero(free))
+            count += int(np.count_nonzero(free))
             found += total(self.g[s][free])
         if count:
             return -found / count
@@ -390,29 +353,25 @@ class _Search:
                 break
             if least == 0.0:
                 first = first or (cells, way)
-            before = x, g
             x, g, change, left, more = self._moved(x, g, cells, way, level)
-            self._over(*before)
             energy, doubt = energy + change, doubt + more
             if energy < least:
-                self._take(x, g)
+                self.x, self.g = x, g
                 least, self.doubt, doubt, first = energy, self.doubt + doubt, 0.0, None
             few = cells.size - left.size < MIN_PROJECTED * cells.size
             cells = left
             if few or left.size < 2:
                 break
             level = -total(cells.values(g)) / cells.size
-        self._over(x, g)
         if least < 0 or first is None:
             return least < 0
         for share in HALVES:
             cells, way = first
             x, g, change, _, more = self._moved(self.x, self.g, cells, share * way, level)
             if change < 0:
-                self._take(x, g)
+                self.x, self.g = x, g
                 self.doubt += more
                 return True
-            self._over(x, g)
         return False
 
     def _way(self, g: AnyArray, cells: Cells, level: float, reduction: float, limit: int) -> AnyArray | None:
@@ -420,10 +379,10 @@ class _Search:
         if cells.size < 2:
             return None
         G = cells.values(g) + level
-        largest = float(self.xp.max(self.xp.abs(G)))
+        largest = float(np.max(np.abs(G)))
         if largest == 0.0:
             return None
-        right = self.xp.astype(G / -largest, self.xp.float32)[None, :]
+        right = np.astype(G / -largest, np.float32)[None, :]
         del G
         system = CellSystem(self.kernel, cells)
         way = constrained_gradients(system, right, np.zeros(1), reduction=reduction, limit=limit)[0, :]
@@ -433,20 +392,20 @@ class _Search:
 
     def _added(self, cells: Cells, v: AnyArray, g: AnyArray | None = None) -> tuple[AnyArray, float, float]:
         """Gradient after adding v on the cells, v.A v, and what single precision may have left in the gradient."""
-        xp, before = self.xp, self.g if g is None else g
+        before = self.g if g is None else g
         self.applications += 1
-        out = self._empty()
-        size = float(xp.max(xp.abs(v))) or 1.0
-        scaled = xp.astype(v / size, xp.float32)
+        out = np.empty_like(before)
+        size = float(np.max(np.abs(v))) or 1.0
+        scaled = np.astype(v / size, np.float32)
         curvature = largest = 0.0
 
         def write(_: int, i: int, block: AnyArray) -> None:
             nonlocal curvature, largest
             piece = cells.pieces[i]
-            Av = xp.reshape(block, (-1,))
-            largest = max(largest, float(xp.max(xp.abs(Av))))
+            Av = np.reshape(block, (-1,))
+            largest = max(largest, float(np.max(np.abs(Av))))
             curvature += total(Av[cells.mask[piece]] * scaled[cells.starts[i] : cells.starts[i + 1]])
-            out[piece] = before[piece] + size * xp.astype(Av, self.real, copy=False)
+            out[piece] = before[piece] + size * np.astype(Av, self.real, copy=False)
 
         self.kernel.stream(self.kernel.symbol_single, lambda _, i: cells.block(scaled, i), write)
         return out, curvature * size**2, ROUNDING * largest * size
@@ -455,13 +414,11 @@ class _Search:
         self, x: AnyArray, g: AnyArray, cells: Cells, way: AnyArray, level: float
     ) -> tuple[AnyArray, AnyArray, float, Cells, float]:
         """Go that way and project; returns x, g, change of energy, cells between their bounds, doubt about g."""
-        xp = self.xp
         old, lower, upper = cells.values(x), _at(self.lower, cells.mask), _at(self.upper, cells.mask)
         new = project(old + way, lower, upper, total(old))[0]
-        out = self._empty()
-        out[:] = x
+        out = x.copy()
         out[cells.mask] = new
-        left = xp.zeros(x.shape[0], dtype=xp.bool)
+        left = np.zeros(x.shape[0], dtype=np.bool)
         left[cells.mask] = (new > lower) & (new < upper)
         new -= old
         del old

@@ -6,7 +6,7 @@ from typing import Any, final
 
 import numpy as np
 
-from faying.halfspace.arrays import namespace, parts
+from faying.halfspace.arrays import parts, sums_between
 from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray
 
@@ -18,10 +18,10 @@ class Cells:
     """The cells where `mask` (flat) holds; values on them are flat arrays in the order of the map."""
 
     def __init__(self, kernel: Kernel, mask: AnyArray) -> None:
-        self.kernel, self.mask, self.xp = kernel, mask, namespace(mask)
+        self.kernel, self.mask = kernel, mask
         width = kernel.shape[1]
         self.pieces = [slice(rows.start * width, rows.stop * width) for rows in kernel.rows]
-        self.counts = [int(self.xp.count_nonzero(mask[s])) for s in self.pieces]
+        self.counts = [int(np.count_nonzero(mask[s])) for s in self.pieces]
         self.starts = [0, *accumulate(self.counts)]
         self.size = self.starts[-1]
 
@@ -34,16 +34,16 @@ class Cells:
         if not self.counts[i]:
             return None
         piece = self.pieces[i]
-        out = self.xp.zeros(piece.stop - piece.start, dtype=values.dtype)
+        out = np.zeros(piece.stop - piece.start, dtype=values.dtype)
         out[self.mask[piece]] = values[self.starts[i] : self.starts[i + 1]]
-        return self.xp.reshape(out, (-1, self.kernel.shape[1]))
+        return np.reshape(out, (-1, self.kernel.shape[1]))
 
     def product(self, values: AnyArray, table: AnyArray) -> AnyArray:
         """Apply a table of the kernel to values on the cells, shape (c, cells), in single precision."""
-        out = self.xp.empty(tuple(values.shape), dtype=values.dtype)
+        out = np.empty(tuple(values.shape), dtype=values.dtype)
 
         def write(k: int, i: int, block: AnyArray) -> None:
-            out[k, self.starts[i] : self.starts[i + 1]] = self.xp.reshape(block, (-1,))[self.mask[self.pieces[i]]]
+            out[k, self.starts[i] : self.starts[i + 1]] = np.reshape(block, (-1,))[self.mask[self.pieces[i]]]
 
         self.kernel.stream(table, lambda k, i: self.block(values[k, :], i), write, needed=[c > 0 for c in self.counts])
         return out
@@ -59,39 +59,38 @@ class Blocks:
     """Coarse blocks of a map, `shape` of them: sums of values over the cells in each, and the way back."""
 
     def __init__(self, cells: Cells) -> None:
-        xp, kernel = cells.xp, cells.kernel
+        kernel = cells.kernel
         self.shape: tuple[int, int] = (max(1, kernel.shape[0] // BLOCK), max(1, kernel.shape[1] // BLOCK))
-        self.xp, self.kernel, self.starts = xp, kernel, cells.starts  # not the cells, which hold their blocks
+        self.kernel, self.starts = kernel, cells.starts  # not the cells, which hold their blocks
         (of_row, edges), (of_column, across) = (_divided(n, m) for n, m in zip(kernel.shape, self.shape, strict=True))
-        self._edges = kernel.place.send(edges)
-        self._numbers = xp.empty(cells.size, dtype=xp.int32)
+        self._edges = edges
+        self._numbers = np.empty(cells.size, dtype=np.int32)
         self._offsets = []  # of each piece: where the cells of each row in each block begin, and the end of the last
-        of_column = kernel.place.send(of_column.astype(np.int32))
+        of_column = of_column.astype(np.int32)
         for i, (rows, piece) in enumerate(zip(kernel.rows, cells.pieces, strict=True)):
             mask = cells.mask[piece]
-            lines = kernel.place.send(of_row[rows].astype(np.int32))
+            lines = of_row[rows].astype(np.int32)
             if cells.counts[i]:
                 every = lines[:, None] * self.shape[1] + of_column[None, :]
-                self._numbers[cells.starts[i] : cells.starts[i + 1]] = xp.reshape(every, (-1,))[mask]
-            counted = xp.cumulative_sum(xp.astype(mask, xp.int64), include_initial=True)
+                self._numbers[cells.starts[i] : cells.starts[i + 1]] = np.reshape(every, (-1,))[mask]
+            counted = np.cumulative_sum(np.astype(mask, np.int64), include_initial=True)
             at = np.arange(rows.stop - rows.start)[:, None] * kernel.shape[1] + across[None, :-1]
-            self._offsets.append(xp.take(counted, kernel.place.send(np.append(at.ravel(), mask.shape[0]))))
+            self._offsets.append(np.take(counted, np.append(at.ravel(), mask.shape[0])))
 
     def sums(self, values: AnyArray, weights: AnyArray | None = None) -> AnyArray:
         """Sum over the cells of each block, of flat values times weights; the sum of rows in double precision."""
-        xp, place = self.xp, self.kernel.place
-        lines = xp.empty((self.kernel.shape[0], self.shape[1]), dtype=xp.float64)
+        lines = np.empty((self.kernel.shape[0], self.shape[1]), dtype=np.float64)
         for i, rows in enumerate(self.kernel.rows):
             here = slice(self.starts[i], self.starts[i + 1])
             given = values[here] if weights is None else values[here] * weights[here]
-            lines[rows, :] = xp.reshape(place.sums_between(given, self._offsets[i]), (-1, self.shape[1]))
-        return place.rows_between(lines, self._edges)
+            lines[rows, :] = np.reshape(sums_between(given, self._offsets[i]), (-1, self.shape[1]))
+        return np.add.reduceat(lines, self._edges[:-1], axis=0)
 
     def take_off(self, values: AnyArray, k: int, blocks: AnyArray, weights: AnyArray | None = None) -> None:
         """Subtract each cell's block, times weights, from row k of values (c, cells)."""
-        flat = self.xp.astype(self.xp.reshape(blocks, (-1,)), self.xp.float32)
+        flat = np.astype(np.reshape(blocks, (-1,)), np.float32)
         for s in parts(self._numbers):
-            share = self.xp.take(flat, self._numbers[s])
+            share = np.take(flat, self._numbers[s])
             values[k, s] -= share if weights is None else share * weights[s]
 
 

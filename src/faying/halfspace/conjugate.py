@@ -14,7 +14,7 @@ which is symmetric and positive whatever C is, takes one product with M, and giv
 out the mean. K is solved on the coarse blocks by conjugate gradients.
 """
 
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -36,46 +36,44 @@ class _Coarse:
     """The smooth part of one component: K, E and Z for given stiffnesses c of the cells."""
 
     def __init__(self, kernel: Kernel, cells: Cells, c: AnyArray) -> None:
-        self.blocks, self.c, self.place = cells.coarse, c, kernel.place
-        xp, shape = kernel.place.xp, self.blocks.shape
+        self.blocks, self.c = cells.coarse, c
+        shape = self.blocks.shape
         stiffness = self.blocks.sums(c)
-        self.stiffness = xp.where(stiffness > 0, stiffness, 0.0)
-        self.whole = float(xp.sum(self.stiffness))
+        self.stiffness = np.where(stiffness > 0, stiffness, 0.0)
+        self.whole = float(np.sum(self.stiffness))
         self.mean = self.whole / (shape[0] * shape[1])
         E = _symbol(kernel, shape)
-        self.E, self.near_inverse = kernel.place.send(E), kernel.place.send(1 / (E + self.mean))
+        self.E, self.near_inverse = E, (1 / (E + self.mean))
         self.inverse: AnyArray | None = None
         if shape[0] * shape[1] <= DENSE:
-            matrix = _circulant(E, shape) + np.diag(kernel.place.fetch(self.stiffness).ravel())
-            self.inverse = kernel.place.send(np.linalg.inv(matrix))
+            matrix = _circulant(E, shape) + np.diag(self.stiffness.ravel())
+            self.inverse = np.linalg.inv(matrix)
 
     def apply_E(self, field: AnyArray) -> AnyArray:
-        return self.place.convolve(field, self.E)
+        return _convolve(field, self.E)
 
     def solve(self, right: AnyArray) -> AnyArray:
         """K times a field of the blocks, its mean exact."""
-        xp = self.place.xp
         if self.inverse is not None:
-            y = xp.reshape(self.inverse @ xp.reshape(right, (-1,)), self.blocks.shape)
+            y = np.reshape(self.inverse @ np.reshape(right, (-1,)), self.blocks.shape)
         else:
             y = self._iterated(right)
-        return y + float(xp.sum(right) - xp.sum(self.stiffness * y)) / self.whole
+        return y + float(np.sum(right) - np.sum(self.stiffness * y)) / self.whole
 
     def _iterated(self, right: AnyArray) -> AnyArray:
-        xp = self.place.xp
         y, r = 0.0 * right, right
-        z = self.place.convolve(r, self.near_inverse)
+        z = _convolve(r, self.near_inverse)
         t, Et = z, r - self.mean * z  # z = (E + mean)^-1 r, so that E z needs no transform
-        rz = first = float(xp.sum(r * z))
+        rz = first = float(np.sum(r * z))
         for _ in range(TURNS):
             if rz <= COARSE**2 * first or rz <= 0:
                 break
             q = Et + self.stiffness * t
-            along = rz / float(xp.sum(t * q))
+            along = rz / float(np.sum(t * q))
             y = y + along * t
             r = r - along * q
-            z = self.place.convolve(r, self.near_inverse)
-            new = float(xp.sum(r * z))
+            z = _convolve(r, self.near_inverse)
+            new = float(np.sum(r * z))
             t, Et = z + (new / rz) * t, r - self.mean * z + (new / rz) * Et
             rz = new
         return y
@@ -101,6 +99,11 @@ def _circulant(symbol: Array, shape: tuple[int, int]) -> Array:
     return np.asarray(first[y[:, None] - y[None, :], x[:, None] - x[None, :]])
 
 
+def _convolve(field: AnyArray, symbol: Array) -> AnyArray:
+    """Product of a small field with a symbol in Fourier space."""
+    return np.fft.irfft2(np.fft.rfft2(field) * symbol, s=field.shape)
+
+
 @final
 class CellSystem:
     """The operator on some cells, and its preconditioner, which gives tractions of total 0 in every component.
@@ -110,11 +113,11 @@ class CellSystem:
 
     def __init__(self, kernel: Kernel, cells: Cells) -> None:
         components = kernel.components
-        self.kernel, self.cells, self.xp = kernel, cells, kernel.place.xp
+        self.kernel, self.cells = kernel, cells
         self.used = 0
         self.coarse = []
         for k in range(components):
-            unit = self.xp.zeros((components, cells.size), dtype=self.xp.float32)
+            unit = np.zeros((components, cells.size), dtype=np.float32)
             unit[k, :] = 1.0
             self.coarse.append(_Coarse(kernel, cells, self._inverse(unit)[k, :]))
 
@@ -130,18 +133,18 @@ class CellSystem:
     def with_totals(self, totals: Array) -> AnyArray:
         """Tractions that have these totals."""
         shares = [float(t) / total(part.c) * part.c for t, part in zip(totals, self.coarse, strict=True)]
-        return self.xp.stack(shares)
+        return np.stack(shares)
 
     def energy(self, residual: AnyArray, size: float) -> float:
         """About the energy of the error that leaves size times this residual (c, cells)."""
         flat = (-1,)
         z = self.preconditioned(residual)
-        return size**2 * dot(self.xp.reshape(residual, flat), self.xp.reshape(z, flat))
+        return size**2 * dot(np.reshape(residual, flat), np.reshape(z, flat))
 
     def preconditioned(self, r: AnyArray) -> AnyArray:
         """The module's A^-1 times r."""
         smooth = [part.solve(part.blocks.sums(r[k, :], part.c)) for k, part in enumerate(self.coarse)]
-        z = self.xp.asarray(r, copy=True)
+        z = np.asarray(r, copy=True)
         for k, (part, u) in enumerate(zip(self.coarse, smooth, strict=True)):
             part.blocks.take_off(z, k, u)
         z = self._inverse(z)
@@ -159,22 +162,21 @@ def constrained_gradients(
     residual and s of shape (c, cells), totals (c,). Stops where the last turn has gained less energy than
     reduction^2 of all that was gained, or after `limit` turns. A bad solve does no harm: callers measure what they get.
     """
-    xp: Any = system.xp
     flat = (-1,)
-    s = xp.zeros(tuple(residual.shape), dtype=xp.float32)
-    r = xp.asarray(residual, copy=True)
+    s = np.zeros(tuple(residual.shape), dtype=np.float32)
+    r = np.asarray(residual, copy=True)
     if np.any(totals != 0):
         s = system.with_totals(totals)
         r -= system.apply(s)
-    r -= xp.mean(r, axis=1, keepdims=True)
+    r -= np.mean(r, axis=1, keepdims=True)
     t = system.preconditioned(r)
-    rz = first = dot(xp.reshape(r, flat), xp.reshape(t, flat))
+    rz = first = dot(np.reshape(r, flat), np.reshape(t, flat))
     gained = 0.0
     for turn in range(limit):
         if rz <= 0:
             break
         q = system.apply(t)
-        curvature = dot(xp.reshape(t, flat), xp.reshape(q, flat))
+        curvature = dot(np.reshape(t, flat), np.reshape(q, flat))
         if curvature <= 0:
             break
         along = rz / curvature
@@ -186,7 +188,7 @@ def constrained_gradients(
         q *= along
         r -= q
         q = system.preconditioned(r)
-        new = dot(xp.reshape(r, flat), xp.reshape(q, flat))
+        new = dot(np.reshape(r, flat), np.reshape(q, flat))
         if new >= GROWTH * first:
             break
         t *= new / rz

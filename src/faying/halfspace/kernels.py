@@ -17,10 +17,10 @@ from typing import final
 
 import numpy as np
 
-from faying.halfspace.arrays import ArrayLibrary
+from faying.halfspace.arrays import Arithmetic, strips
 from faying.typing import AnyArray, Array
 
-HOST = ArrayLibrary()
+DOUBLE = Arithmetic()
 Read = Callable[[int, int], AnyArray | None]
 Write = Callable[[int, int, AnyArray], None]
 
@@ -44,7 +44,7 @@ class Kernel:
     symbol_single: AnyArray
     inverse: AnyArray
     strength: float
-    place: ArrayLibrary
+    arithmetic: Arithmetic
     spectra: "Spectra"
 
     @property
@@ -64,19 +64,18 @@ class Kernel:
         weight = [
             np.where((np.arange(n // 2 + 1) == 0) | (2 * np.arange(n // 2 + 1) == n), 1.0, 2.0) for n in self.padded
         ]
-        table = self.place.fetch(self.symbol[0, 0, ...])
+        table = self.symbol[0, 0, ...]
         sums = weight[0] @ table.transpose(1, 0, 2).reshape(len(weight[0]), -1)[:, : len(weight[1])] @ weight[1]
         return float(sums / (self.padded[0] * self.padded[1]))
 
     @cached_property
     def rows(self) -> list[slice]:
         """The blocks of rows that `stream` takes and gives."""
-        return self.place.rows((self.shape[0], self.padded[1]))
+        return self.arithmetic.rows((self.shape[0], self.padded[1]))
 
     def apply(self, traction: AnyArray) -> AnyArray:
         """Displacement under traction, shape (c, ny, nx), double precision."""
-        xp = self.place.xp
-        out = xp.empty(tuple(traction.shape), dtype=xp.float64)
+        out = np.empty(tuple(traction.shape), dtype=np.float64)
 
         def write(k: int, i: int, block: AnyArray) -> None:
             out[k, self.rows[i], :] = block
@@ -90,7 +89,7 @@ class Kernel:
         read(component, i) gives the rows `self.rows[i]`, or None where all of them are 0; write(component, i, block)
         takes those of the outcome. needed[i]: whether anybody wants them.
         """
-        place, (my, mx), nx = self.place, self.padded, self.shape[1]
+        arithmetic, (my, mx), nx = self.arithmetic, self.padded, self.shape[1]
         spectra = self.spectra.take(table)
         for k, spectrum in enumerate(spectra):
             spectrum[:, self.shape[0] :, :] = 0.0
@@ -99,22 +98,22 @@ class Kernel:
                 if block is None:
                     spectrum[:, rows, :] = 0.0
                 else:
-                    self.spectra.put(spectrum, rows, place.along_rows(block, mx))
+                    self.spectra.put(spectrum, rows, arithmetic.along_rows(block, mx))
         upper = my // 2 + 1
-        for some in place.batches(tuple(spectra[0].shape)):
+        for some in arithmetic.batches(tuple(spectra[0].shape)):
             strips = [spectrum[some, :, :] for spectrum in spectra]
             for strip in strips:
-                place.along_columns(strip)
+                arithmetic.along_columns(strip)
             _multiply([s[:, :upper, :] for s in strips], table[:, :, some, :, :], 1.0)
             if my > 2:
                 mirrored = table[:, :, some, 1 : my - upper + 1, :]
                 _multiply([s[:, upper:, :] for s in strips], mirrored[:, :, :, ::-1, :], -1.0)
             for strip in strips:
-                place.along_columns(strip, back=True)
+                arithmetic.along_columns(strip, back=True)
         for k, spectrum in enumerate(spectra):
             for i, rows in enumerate(self.rows):
                 if needed is None or needed[i]:
-                    write(k, i, place.back_along_rows(self.spectra.rows(spectrum, rows), mx)[:, :nx])
+                    write(k, i, arithmetic.back_along_rows(self.spectra.rows(spectrum, rows), mx)[:, :nx])
 
 
 def _multiply(spectra: list[AnyArray], table: AnyArray, sign: float) -> None:
@@ -132,35 +131,34 @@ def _multiply(spectra: list[AnyArray], table: AnyArray, sign: float) -> None:
 class Spectra:
     """The work arrays of a kernel's transforms; those in single precision are kept from one product to the next."""
 
-    def __init__(self, padded: tuple[int, int], components: int, place: ArrayLibrary) -> None:
-        self._length, self._components, self._place = padded[1] // 2 + 1, components, place
-        strips, width = place.strips(self._length)
-        self._shape = strips, padded[0], width
+    def __init__(self, padded: tuple[int, int], components: int) -> None:
+        self._length, self._components = padded[1] // 2 + 1, components
+        number, width = strips(self._length)
+        self._shape = number, padded[0], width
         self._kept: list[AnyArray] = []
 
     def take(self, table: AnyArray) -> list[AnyArray]:
         """One spectrum a component, in the precision of the table, with any content but 0 beyond the last column."""
-        xp = self._place.xp
-        if table.dtype == xp.float64:
-            return [xp.zeros(self._shape, dtype=xp.complex128) for _ in range(self._components)]
+        if table.dtype == np.float64:
+            return [np.zeros(self._shape, dtype=np.complex128) for _ in range(self._components)]
         if not self._kept:
-            self._kept = [xp.zeros(self._shape, dtype=xp.complex64) for _ in range(self._components)]
+            self._kept = [np.zeros(self._shape, dtype=np.complex64) for _ in range(self._components)]
         return self._kept
 
     def put(self, spectrum: AnyArray, rows: slice, values: AnyArray) -> None:
         """Store rows of values (rows, columns) in a spectrum."""
-        xp, width = self._place.xp, self._shape[2]
+        width = self._shape[2]
         whole = self._length // width
-        inside = xp.reshape(values[:, : whole * width], (-1, whole, width))
-        spectrum[:whole, rows, :] = xp.permute_dims(inside, (1, 0, 2))
+        inside = np.reshape(values[:, : whole * width], (-1, whole, width))
+        spectrum[:whole, rows, :] = np.permute_dims(inside, (1, 0, 2))
         if whole * width < self._length:
             spectrum[whole, rows, : self._length - whole * width] = values[:, whole * width :]
 
     def rows(self, spectrum: AnyArray, rows: slice) -> AnyArray:
         """Rows of a spectrum, (rows, columns)."""
-        xp, (strips, _, width) = self._place.xp, self._shape
-        inside = xp.permute_dims(spectrum[:, rows, :], (1, 0, 2))
-        return xp.reshape(inside, (-1, strips * width))[:, : self._length]
+        strips, _, width = self._shape
+        inside = np.permute_dims(spectrum[:, rows, :], (1, 0, 2))
+        return np.reshape(inside, (-1, strips * width))[:, : self._length]
 
 
 def transform_shape(shape: tuple[int, int], *, periodic: bool) -> tuple[int, int]:
@@ -181,7 +179,7 @@ def wave_numbers(padded: tuple[int, int], aspect: float) -> tuple[Array, Array, 
     return qx, qy, q
 
 
-def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, place: ArrayLibrary = HOST) -> Kernel:
+def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, arithmetic: Arithmetic = DOUBLE) -> Kernel:
     """Normal displacement under pressure, units of E* and of the column spacing.
 
     Periodic: u = 2 p/(E* |q|), the mean displacement left out (Johnson 1985, 13.2; Stanley and Kato 1997,
@@ -192,7 +190,7 @@ def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, plac
     symbol = 2 / q if periodic else _love(padded, aspect)
     if periodic:
         symbol[0, 0] = 0.0
-    return _assembled(shape, padded, aspect, (symbol[None, None], _inverse(q)[None, None]), 2.0, place)
+    return _assembled(shape, padded, aspect, (symbol[None, None], _inverse(q)[None, None]), 2.0, arithmetic)
 
 
 def shear_kernel(
@@ -202,7 +200,7 @@ def shear_kernel(
     *,
     periodic: bool,
     vector: bool = True,
-    place: ArrayLibrary = HOST,
+    arithmetic: Arithmetic = DOUBLE,
 ) -> Kernel:
     """Tangential displacement (u_x, u_y) under traction (t_x, t_y), units of E* and of the column spacing.
 
@@ -226,9 +224,9 @@ def shear_kernel(
     base = 2 * G * _inverse(q)
     inverse = {k: base * ((k != "xy") + nu / (1 - nu) * v / q**2) for k, v in along.items()}
     if not vector:
-        return _assembled(shape, padded, aspect, (parts["xx"][None, None], base[None, None]), 1 / G, place)
+        return _assembled(shape, padded, aspect, (parts["xx"][None, None], base[None, None]), 1 / G, arithmetic)
     full = [np.array([[d["xx"], d["xy"]], [d["xy"], d["yy"]]]) for d in (parts, inverse)]
-    return _assembled(shape, padded, aspect, (full[0], full[1]), 1 / G, place)
+    return _assembled(shape, padded, aspect, (full[0], full[1]), 1 / G, arithmetic)
 
 
 def _assembled(
@@ -237,20 +235,20 @@ def _assembled(
     aspect: float,
     tables: tuple[Array, Array],
     strength: float,
-    place: ArrayLibrary,
+    arithmetic: Arithmetic,
 ) -> Kernel:
-    symbol, inverse = (_in_strips(table, place.strips(padded[1] // 2 + 1)) for table in tables)
-    single = place.xp.float32
+    symbol, inverse = (_in_strips(table, strips(padded[1] // 2 + 1)) for table in tables)
+    single = np.float32
     return Kernel(
         shape=shape,
         padded=padded,
         aspect=aspect,
-        symbol=place.send(symbol),
-        symbol_single=place.send(symbol.astype(np.float32), single),
-        inverse=place.send(inverse.astype(np.float32), single),
+        symbol=symbol,
+        symbol_single=np.asarray(symbol.astype(np.float32), dtype=single),
+        inverse=np.asarray(inverse.astype(np.float32), dtype=single),
         strength=strength,
-        place=place,
-        spectra=Spectra(padded, len(symbol), place),
+        arithmetic=arithmetic,
+        spectra=Spectra(padded, len(symbol)),
     )
 
 

@@ -7,7 +7,7 @@ from math import log, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from faying.halfspace.arrays import ArrayLibrary, Device, place_for
+from faying.halfspace.arrays import Arithmetic
 from faying.halfspace.spots import Spots
 from faying.style import Summary
 from faying.typing import Array, Mask
@@ -33,7 +33,6 @@ class ContactMaps(Summary):
     iterations: int
     applications: int
     workers: int | None = None
-    device: Device = "cpu"
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """The map, the pressure, what touches, the error bound."""
@@ -50,9 +49,9 @@ class ContactMaps(Summary):
         }
 
     @property
-    def place(self) -> ArrayLibrary:
-        """Where tangent and slip are computed."""
-        return place_for(None, self.device, "double", self.workers)
+    def arithmetic(self) -> Arithmetic:
+        """The arithmetic of tangent and slip."""
+        return Arithmetic(workers=self.workers)
 
     @property
     def pressure(self) -> float:

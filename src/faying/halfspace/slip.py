@@ -47,9 +47,9 @@ def slip_of(contact: ContactMaps, shear_ratio: float, friction: float, *, tol: f
     """
     _check(shear_ratio, friction)
     shape, dx = contact.heights.shape, contact.spacing[0]
-    touching, place = contact.traction > 0, contact.place
+    touching, arithmetic = contact.traction > 0, contact.arithmetic
     kernel = shear_kernel(
-        shape, contact.spacing[1] / dx, contact.nu, periodic=contact.periodic, vector=False, place=place
+        shape, contact.spacing[1] / dx, contact.nu, periodic=contact.periodic, vector=False, arithmetic=arithmetic
     )
     stuck_stiffness = float(stiffness_on(kernel, touching)[0, 0])
     bound = friction * contact.traction.ravel().astype(float) / contact.E_star
@@ -67,16 +67,16 @@ def slip_of(contact: ContactMaps, shear_ratio: float, friction: float, *, tol: f
         )
     problem = Problem(
         kernel=kernel,
-        load=place.send(np.zeros(bound.size)),
-        lower=place.send(-bound),
-        upper=place.send(bound),
+        load=np.zeros(bound.size),
+        lower=(-bound),
+        upper=bound,
         mean=mean,
         scale=mean / stuck_stiffness,
     )
-    found = minimise(problem, tol=tol, start=lambda: place.send(shear_ratio * bound))
-    x = place.fetch(found.x)
+    found = minimise(problem, tol=tol, start=lambda: shear_ratio * bound)
+    x = found.x
     sliding = touching.ravel() & (np.abs(x) >= bound)
-    slipped = np.where(sliding, np.abs(place.fetch(found.G)), 0.0)
+    slipped = np.where(sliding, np.abs(found.G), 0.0)
     moved = -found.level
     loss = 4 * float((bound * slipped).mean())
     return Slip(

@@ -33,7 +33,6 @@ class HalfSpaceContact(ContactMaps):
         iterations: Newton steps on the finest map.
         applications: products with the half-space's operator or its inverse on it.
         workers: threads of the transforms.
-        device: where it was solved, and where its stiffness and slip are: "cpu" or "gpu".
     """
 
     def plot(self, axes: Any = None) -> "list[matplotlib.axes.Axes]":

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from faying.checks import flag, instance, number, real, whole
 from faying.errors import InputError, NotConverged, shown
-from faying.halfspace.arrays import ArrayLibrary, Device, Precision, deviation, parts, place_for, total
+from faying.halfspace.arrays import Arithmetic, Precision, checked_precision, deviation, parts, total
 from faying.halfspace.bounded import Minimum, Problem, Progress, Start, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
@@ -36,7 +36,6 @@ def solve_half_space(
     tol: float = 1e-6,
     start: HalfSpaceContact | None = None,
     workers: int | None = None,
-    device: Device | None = None,
     precision: Precision = "double",
     progress: Progress | None = None,
 ) -> HalfSpaceContact:
@@ -57,8 +56,6 @@ def solve_half_space(
             energy whatever the iteration did; in (0, 1).
         start: an earlier contact of the same map, at other loads or on fewer points, to begin from.
         workers: threads of the transforms on the CPU.
-        device: "gpu" solves with CuPy on a graphics card, "cpu" with NumPy; None where the heights are, which may be
-            an array of any library that follows the array API standard. The contact always holds NumPy arrays.
         precision: "single" keeps pressures and gaps in half of the memory, and returns them so. Its `.residual` is that
             of the pressures returned, in double precision: it reaches about 1e-6.
         progress: called with (step, residual) on the finest map; it may raise to stop the solution.
@@ -75,8 +72,8 @@ def solve_half_space(
         Polonsky and Keer 1999, doi:10.1016/S0043-1648(99)00113-1; Almqvist et al. 2007,
         doi:10.1016/j.triboint.2005.11.008.
     """
-    place = place_for(heights, device, precision, workers)
-    h, (dx, dy) = _checked_map(heights, spacing, place)
+    arithmetic = Arithmetic(checked_precision(precision), workers)
+    h, (dx, dy) = _checked_map(heights, spacing, arithmetic)
     limit = _checked_hardness(hardness, h.shape)
     E_star, nu, tol = number(E_star, "E_star", "Pa", least=0), real(nu, "nu"), real(tol, "tol")
     _check_numbers(nu, tol)
@@ -84,10 +81,10 @@ def solve_half_space(
         whole(workers, "workers", least=1, greatest=4096)
     flag(periodic, "periodic")
     instance(start, HalfSpaceContact | None, "start", "give an earlier contact, or leave it out")
-    _check_memory(h.shape, periodic, place)
+    _check_memory(h.shape, periodic, arithmetic)
     if (pressure is None) == (displacement is None):
         raise InputError("give either pressure or displacement to solve_half_space, one of the two")
-    options = _Options(E_star=E_star, hardness=limit, nu=nu, periodic=periodic, tol=tol, place=place)
+    options = _Options(E_star=E_star, hardness=limit, nu=nu, periodic=periodic, tol=tol, arithmetic=arithmetic)
     problem = _Pressing(h, (dx, dy), options, progress)
     first = None if start is None else _first(start, h.shape, (dx, dy))
     if displacement is not None:
@@ -121,7 +118,7 @@ class _Options:
     nu: float
     periodic: bool
     tol: float
-    place: ArrayLibrary
+    arithmetic: Arithmetic
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -157,16 +154,16 @@ class _Pressing:
             return self._solution(None)
         if start is None or not start.any():
             return self._solution(self._nested(self.map, mean))
-        place, scale = self.options.place, mean / start.mean(dtype=float)
-        return self._solution(self._minimise(self.map, mean, lambda: place.send((start * scale).ravel(), place.real)))
+        real, scale = self.options.arithmetic.real, mean / start.mean(dtype=float)
+        return self._solution(self._minimise(self.map, mean, lambda: np.asarray((start * scale).ravel(), dtype=real)))
 
     def _nested(self, on: _Map, mean: float) -> Minimum:
         """Solve coarse maps first; each gives the next one's start."""
         start: Start | None = None
         if min(on.h.shape) >= 2 * COARSEST:
-            small, place = on.coarser(), self.options.place
+            small = on.coarser()
             try:
-                found = place.fetch(self._nested(small, mean).x).reshape(small.h.shape)
+                found = self._nested(small, mean).x.reshape(small.h.shape)
             except NotConverged:
                 pass  # a coarse map only gives a start; do without
             else:
@@ -175,19 +172,20 @@ class _Pressing:
         return self._minimise(on, mean, start)
 
     def _fine(self, found: Array, shape: tuple[int, ...]) -> AnyArray:
-        place = self.options.place
-        return place.send(spread_map(found, shape).ravel(), place.real)
+        return np.asarray(spread_map(found, shape).ravel(), dtype=self.options.arithmetic.real)
 
     def _minimise(self, on: _Map, mean: float, start: Start | None) -> Minimum:
         finest = on is self.map
-        options, place = self.options, self.options.place
+        options, arithmetic = self.options, self.options.arithmetic
         problem = Problem(
-            kernel=normal_kernel((on.h.shape[0], on.h.shape[1]), on.aspect, periodic=options.periodic, place=place),
-            load=place.send(on.h.ravel()),
+            kernel=normal_kernel(
+                (on.h.shape[0], on.h.shape[1]), on.aspect, periodic=options.periodic, arithmetic=arithmetic
+            ),
+            load=on.h.ravel(),
             datum=self.top,
             unit=on.cell,
             lower=0.0,
-            upper=on.limit if isinstance(on.limit, float) else place.send(on.limit.ravel(), place.real),
+            upper=on.limit if isinstance(on.limit, float) else np.asarray(on.limit.ravel(), dtype=arithmetic.real),
             mean=mean,
             # a smooth flat has no roughness to measure by: take what its own load does to one cell
             scale=self.rms / on.cell if self.rms > 0 else mean,
@@ -202,14 +200,14 @@ class _Pressing:
 
     def _solution(self, found: Minimum | None) -> HalfSpaceContact:
         shape, options = self.heights.shape, self.options
-        real = np.float64 if options.place.precision == "double" else np.float32
+        real = options.arithmetic.real
         traction, displacement = np.zeros(shape, real), np.zeros(shape, real)
         plane, residual, steps, applications = self.top, 0.0, 0, 0
         if found is not None:
             plane = self.top + found.level * self.spacing[0]
             traction, displacement = self._maps(found, plane)
             residual, steps, applications = found.residual, found.steps, found.applications
-            if options.place.precision == "single":
+            if options.arithmetic.precision == "single":
                 residual, applications = self._certified(traction, residual), applications + 1
         return HalfSpaceContact(
             heights=self.heights,
@@ -224,22 +222,21 @@ class _Pressing:
             residual=residual,
             iterations=steps,
             applications=applications,
-            workers=options.place.workers,
-            device="gpu" if hasattr(options.place.xp, "asnumpy") else "cpu",
+            workers=options.arithmetic.workers,
         )
 
     def _maps(self, found: Minimum, plane: float) -> tuple[Array, Array]:
         """Traction [Pa] and displacement [m], made where x and G of the solution are."""
-        place, x, G = self.options.place, found.x, found.G
-        load = place.send(self.heights.ravel())
+        x, G = found.x, found.G
+        load = self.heights.ravel()
         least = ROUNDING * total(x) / x.shape[0]
         for s in parts(x):
             # less than this is what the projection's rounding leaves, not contact
-            x[s] = place.xp.where(x[s] > least, x[s], 0.0) * self.options.E_star
-            moved = place.xp.astype(G[s], place.xp.float64) * self.spacing[0] + load[s] - plane
-            G[s] = place.xp.astype(moved, place.real)
+            x[s] = np.where(x[s] > least, x[s], 0.0) * self.options.E_star
+            moved = np.astype(G[s], np.float64) * self.spacing[0] + load[s] - plane
+            G[s] = moved.astype(self.options.arithmetic.real)
         shape = self.heights.shape
-        return place.fetch(x).reshape(shape), place.fetch(G).reshape(shape)
+        return x.reshape(shape), G.reshape(shape)
 
     def _certified(self, traction: Array, claimed: float) -> float:
         """The residual of pressures that have been rounded to single precision, in double precision."""
@@ -266,13 +263,13 @@ def error_bound(
     Tractions outside 0 to hardness are cut to these bounds first. Raises InputError as `solve_half_space` does and for
     a map of another shape or without any pressure.
     """
-    h, (dx, dy) = _checked_map(heights, spacing, ArrayLibrary())
+    h, (dx, dy) = _checked_map(heights, spacing, Arithmetic())
     limit = _checked_hardness(hardness, h.shape)
     E_star = number(E_star, "E_star", "Pa", least=0)
     given = np.asarray(traction)
     if given.shape != h.shape or not (given > 0).any():
         raise InputError(f"traction of shape {given.shape}; give pressures above 0 on a map of shape {h.shape}")
-    options = _Options(E_star=E_star, hardness=limit, nu=0.3, periodic=periodic, tol=0.5, place=ArrayLibrary())
+    options = _Options(E_star=E_star, hardness=limit, nu=0.3, periodic=periodic, tol=0.5, arithmetic=Arithmetic())
     return _residual(h, (dx, dy), given, np.inf if limit is None else limit / E_star, options)
 
 
@@ -280,13 +277,13 @@ def _residual(
     h: Array, spacing: tuple[float, float], traction: Array, limit: float | Array, options: _Options
 ) -> float:
     """Duality gap over load times rms height of pressures cut to their bounds, in double precision."""
-    place = ArrayLibrary(options.place.xp, "double", options.place.workers)
-    xp, (ny, nx) = place.xp, h.shape
-    most = limit if isinstance(limit, float) else place.send(limit.ravel(), xp.float64)
-    x = xp.clip(place.send(traction.ravel(), xp.float64) / options.E_star, 0.0, most)
+    arithmetic = Arithmetic(workers=options.arithmetic.workers)
+    ny, nx = h.shape
+    most = limit if isinstance(limit, float) else np.asarray(limit.ravel(), dtype=np.float64)
+    x = np.clip(np.asarray(traction.ravel(), dtype=np.float64) / options.E_star, 0.0, most)
     problem = Problem(
-        kernel=normal_kernel((ny, nx), spacing[1] / spacing[0], periodic=options.periodic, place=place),
-        load=place.send(h.ravel()),
+        kernel=normal_kernel((ny, nx), spacing[1] / spacing[0], periodic=options.periodic, arithmetic=arithmetic),
+        load=h.ravel(),
         datum=float(h.max()),
         unit=spacing[0],
         lower=0.0,
@@ -347,12 +344,11 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
 
 
 def _checked_map(
-    heights: ArrayLike, spacing: float | tuple[float, float], place: ArrayLibrary
+    heights: ArrayLike, spacing: float | tuple[float, float], arithmetic: Arithmetic
 ) -> tuple[Array, tuple[float, float]]:
     """A copy of the heights that nobody changes, and (dx, dy)."""
-    given = heights if isinstance(heights, (np.ndarray, list, tuple)) else _fetched(heights, place)
-    keep = place.precision == "single" and isinstance(given, np.ndarray) and given.dtype == np.float32
-    h = _numbers(given, "heights", np.float32 if keep else np.float64)
+    keep = arithmetic.precision == "single" and isinstance(heights, np.ndarray) and heights.dtype == np.float32
+    h = _numbers(heights, "heights", np.float32 if keep else np.float64)
     if h.ndim != 2 or min(h.shape) < 2:
         raise InputError(f"heights of shape {h.shape}; give a map of rows and columns, at least 2 by 2")
     bad = int(np.count_nonzero(~np.isfinite(h)))
@@ -367,13 +363,6 @@ def _checked_map(
     if len(pair) != 2:
         raise InputError(f"spacing = {shown(spacing)}; give the distance between points in metres, one or (dx, dy)")
     return _frozen(h), (number(pair[0], "spacing", "m", least=0), number(pair[1], "spacing", "m", least=0))
-
-
-def _fetched(heights: Any, place: ArrayLibrary) -> Any:
-    """Heights of another library as an array of NumPy."""
-    if not hasattr(heights, "__array__") and not hasattr(heights, "__array_namespace__"):
-        raise InputError(f"heights: {shown(heights)}; give an array of heights in metres, rows and columns")
-    return place.fetch(heights)
 
 
 def _numbers(given: Any, name: str, kind: type = np.float64) -> Array:
@@ -430,11 +419,8 @@ def memory_needed(shape: tuple[int, int], *, periodic: bool, precision: Precisio
     return (76.0 if precision == "double" else 67.0) * points + 9.0 * transformed + BLOCKS
 
 
-def _check_memory(shape: tuple[int, ...], periodic: bool, place: ArrayLibrary) -> None:
-    if place.host:
-        need = memory_needed((shape[0], shape[1]), periodic=periodic, precision=place.precision)
-    else:
-        need = 24.0 * shape[0] * shape[1]  # heights, traction and displacement; the rest is on the device
+def _check_memory(shape: tuple[int, ...], periodic: bool, arithmetic: Arithmetic) -> None:
+    need = memory_needed((shape[0], shape[1]), periodic=periodic, precision=arithmetic.precision)
     have = available()
     if have is not None and need > have:
         raise InputError(

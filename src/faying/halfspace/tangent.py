@@ -6,7 +6,6 @@ from typing import final
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.halfspace.arrays import namespace
 from faying.halfspace.cells import Cells
 from faying.halfspace.conjugate import CellSystem, constrained_gradients
 from faying.halfspace.kernels import Kernel, normal_kernel, shear_kernel
@@ -48,14 +47,14 @@ def stiffness_on(kernel: Kernel, touching: Mask) -> Array:
     the traction leaves e^2 in the stiffness, which the preconditioner tells from the residual. Raises NotConverged
     where the passes do not settle.
     """
-    c, n, xp = kernel.components, touching.size, kernel.place.xp
-    cells = Cells(kernel, kernel.place.send(touching.ravel()))
+    c, n = kernel.components, touching.size
+    cells = Cells(kernel, touching.ravel())
     if cells.size == 0:
         return np.zeros((c, c))
     if cells.size == n and not kernel.moves_mean:
         return np.diag(np.full(c, np.inf))
     system = CellSystem(kernel, cells)
-    s = [xp.zeros((c, cells.size), dtype=xp.float64) for _ in range(c)]  # one a load direction
+    s = [np.zeros((c, cells.size), dtype=np.float64) for _ in range(c)]  # one a load direction
     moved = list(s)
     worst = np.inf
     for turn in range(PASSES):
@@ -64,12 +63,12 @@ def stiffness_on(kernel: Kernel, touching: Mask) -> Array:
             totals = np.zeros(c)
             totals[k] = n if turn == 0 else 0.0
             step = constrained_gradients(system, right, totals / size, reduction=3e-3, limit=60)
-            s[k] = s[k] + size * xp.astype(step, xp.float64)
+            s[k] = s[k] + size * np.astype(step, np.float64)
             # single precision leaves the totals off by 1e-7: restore them
-            missing = kernel.place.send(n * np.eye(c)[k]) - xp.sum(s[k], axis=1)
+            missing = (n * np.eye(c)[k]) - np.sum(s[k], axis=1)
             s[k] += missing[:, None] / cells.size
             moved[k] = cells.product(s[k], kernel.symbol)
-        compliance = np.array([[float(xp.sum(s[k] * moved[l])) for l in range(c)] for k in range(c)])
+        compliance = np.array([[float(np.sum(s[k] * moved[l])) for l in range(c)] for k in range(c)])
         worst = max(system.energy(*_uneven(moved[k])) / compliance[k, k] for k in range(c))
         if MARGIN * worst <= ENOUGH:
             return np.asarray(np.linalg.inv((compliance + compliance.T) / (2 * n)))
@@ -80,10 +79,9 @@ def stiffness_on(kernel: Kernel, touching: Mask) -> Array:
 
 def _uneven(moved: AnyArray) -> tuple[AnyArray, float]:
     """What keeps the points from moving as one, over its largest entry, in single precision; and that entry."""
-    xp = namespace(moved)
-    r = xp.mean(moved, axis=1, keepdims=True) - moved
-    size = float(xp.max(xp.abs(r))) or 1.0
-    return xp.astype(r / size, xp.float32), size
+    r = np.mean(moved, axis=1, keepdims=True) - moved
+    size = float(np.max(np.abs(r))) or 1.0
+    return np.astype(r / size, np.float32), size
 
 
 def normal_stiffness_of(contact: ContactMaps, *, loading: bool) -> float:
@@ -92,7 +90,7 @@ def normal_stiffness_of(contact: ContactMaps, *, loading: bool) -> float:
         contact.heights.shape,
         contact.spacing[1] / contact.spacing[0],
         periodic=contact.periodic,
-        place=contact.place,
+        arithmetic=contact.arithmetic,
     )
     cells = contact.traction > 0
     if loading:
@@ -103,7 +101,7 @@ def normal_stiffness_of(contact: ContactMaps, *, loading: bool) -> float:
 def tangential_stiffness_of(contact: ContactMaps) -> Array:
     """Return the stiffness against shear without slip [Pa/m], shape (2, 2); see `Tangent`."""
     shape, aspect = contact.heights.shape, contact.spacing[1] / contact.spacing[0]
-    shear = shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, place=contact.place)
+    shear = shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, arithmetic=contact.arithmetic)
     return stiffness_on(shear, contact.traction > 0) * contact.E_star / contact.spacing[0]
 
 

@@ -17,7 +17,6 @@ from faying.contact.measured_range import MeasuredRange
 from faying.contact.parameter import TABLE, TEXT, Parameter
 from faying.contact.pressure_series import PressureSeries, cached, cached_numbers, solve_series
 from faying.errors import InputError, shown
-from faying.halfspace.arrays import Device
 from faying.halfspace.sized import solve_with_size
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.solve import halved_map, refined_map, solve_half_space
@@ -70,7 +69,6 @@ class HalfSpace(ContactLaw):
             them and where its loading curve needs more.
         lowest, highest: the first and the last of these pressures [Pa].
         tol: as in `solve_half_space`.
-        device: "cpu", or "gpu" to solve with CuPy on a graphics card.
         progress: called with (solutions done, solutions in all) while they are solved, on first use.
         cache: folder that keeps solved contacts by the hash of all that they depend on; None keeps nothing.
 
@@ -92,7 +90,6 @@ class HalfSpace(ContactLaw):
     lowest: float | None = None
     highest: float | None = None
     tol: float = 1e-5
-    device: Device = "cpu"
     progress: Callable[[int, int], object] | None = field(default=None, repr=False, compare=False)
     cache: Path | None = field(default=None, repr=False, compare=False)
 
@@ -108,7 +105,6 @@ class HalfSpace(ContactLaw):
         "lowest": Parameter("Pa", "least pressure covered", 0),
         "highest": Parameter("Pa", "greatest pressure covered, above the least and below the hardness", 0),
         "tol": Parameter("", "error bound asked of every contact", 0, 1),
-        "device": Parameter(TEXT, "where contacts are solved: CPU, or graphics card with CuPy", choices=("cpu", "gpu")),
         "cache": Parameter(TABLE, "folder that keeps solved contacts", surface="cache"),
         "progress": Parameter(TABLE, "told how many contacts are solved", surface="progress"),
     }
@@ -200,7 +196,6 @@ class HalfSpace(ContactLaw):
                 pressure=pressure,
                 nu=self.nu,
                 tol=self.tol,
-                device=self.device,
                 hardness=hardness,
                 periodic=self.periodic,
                 start=start,
