@@ -148,7 +148,7 @@ def cone_of(structure: BoltedStructure, paths: LoadPaths, index: int) -> float:
     """Return the compliance [m/N] of what a bolt clamps by the deformation cone of VDI 2230.
 
     The parts are as wide as a ring of the area of the joint that is the bolt's own, the mean of its joints, and five
-    seats at most. NaN for a meshed bolt, where its seat is no ring, and where its joints make no chain of parts from
+    seats at most. NaN for a meshed bolt, where its seat is not a ring, and where its joints make no chain of parts from
     seat to seat.
     """
     fitted, mesh, cuts = structure.fitted_bolts[index], structure.mesh, paths.cuts[index]

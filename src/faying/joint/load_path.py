@@ -39,7 +39,7 @@ class BoltLine:
 
     @classmethod
     def of(cls, mesh: NamedFaces, placed: Placed) -> "BoltLine":
-        """Return the line of a bolt in its place; a seat that is no ring counts as wide as its face."""
+        """Return the line of a bolt in its place; a seat that is not a ring counts as wide as its face."""
         ring = seat_ring(mesh, placed) if isinstance(placed, BoltPlace) else None
         outer = 2 * float(_radii(mesh, placed).max()) if ring is None else ring[1]
         return cls(seats=placed.seats, reach=REACH * outer)
