@@ -55,9 +55,9 @@ def timed(work):
 
 
 def main():
-    from faying.answer import load_answers
     from faying.case.case import Case, Progress
     from faying.case.engine import engine_of
+    from faying.loads import solve
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--size", type=float, nargs="+", default=[12.0, 6.0])
@@ -74,10 +74,8 @@ def main():
         _, second = timed(lambda engine=engine: engine.preload(0))
 
         springs = case.structure.springs(state.pressures)
-        base, factor = timed(
-            lambda c=case, s=state, k=springs, e=engine: load_answers.preloaded_case(c, s, k, e, modes=False)
-        )
-        found, ten = timed(lambda base=base, plan=plan: load_answers.answers(base, plan.load_cases, Progress(0)))
+        base, factor = timed(lambda c=case, s=state, k=springs, e=engine: solve.preloaded_case(c, s, k, e, modes=False))
+        found, ten = timed(lambda base=base, plan=plan: solve.answers(base, plan.load_cases, Progress(0)))
         print(
             f"{case.structure.mesh.unknowns:7,} unknowns: two preloads {first + second:.2f} s, factorisation "
             f"{factor:.2f} s, ten cases {ten:.2f} s; opened up to {found.opened.max():.0%}, superposition off by up "

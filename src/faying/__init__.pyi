@@ -1,9 +1,7 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
 from . import contact as contact
-from .answer.bolt_sheet import bolt_sheet as bolt_sheet
 from .answer.level_curves import LevelCurves as LevelCurves
 from .answer.level_curves import level_curves as level_curves
-from .answer.load_cases import load_cases as load_cases
 from .answer.run import run as run
 from .asperity_fe import solve_asperity as solve_asperity
 from .backbones.backbone import backbone as backbone
@@ -39,7 +37,6 @@ from .form.gap_map import GapMap as GapMap
 from .form.waviness import Waviness as Waviness
 from .halfspace import solve_half_space as solve_half_space
 from .identify.identification import Identification as Identification
-from .identify.load import load as load
 from .identify.of_study import identify as identify
 from .identify.predict import predict as predict
 from .identify.prediction import Prediction as Prediction
@@ -47,10 +44,8 @@ from .joint.joint import Joint as Joint
 from .joint.state import State as State
 from .joint.state import VibrationModes as VibrationModes
 from .joint.structure import Structure as Structure
-from .loads.load import Displacement as Displacement
-from .loads.load import Force as Force
-from .loads.load import Load as Load
-from .loads.load import Pressure as Pressure
+from .loads.load_cases import load_cases as load_cases
+from .loads.record import LoadCases as LoadCases
 from .materials import CATALOGUE as CATALOGUE
 from .materials import RIGID as RIGID
 from .materials import ContactPair as ContactPair
@@ -72,11 +67,15 @@ from .result import read_model_modes as read_model_modes
 from .result.backbone import Backbone as Backbone
 from .result.difference import RunDifference as RunDifference
 from .result.difference import compare_runs as compare_runs
-from .result.load_cases import LoadCases as LoadCases
 from .setup.check import check as check
 from .setup.faces import faces as faces
 from .setup.new import new_study as new_study
+from .sheet.bolt_sheet import bolt_sheet as bolt_sheet
 from .study import Study as Study
+from .study.load import Displacement as Displacement
+from .study.load import Force as Force
+from .study.load import Load as Load
+from .study.load import Pressure as Pressure
 from .surface import synthesize as synthesize
 from .surface.combine import Combined as Combined
 from .surface.combine import combine as combine
@@ -91,3 +90,4 @@ from .sweeps.axes import axis_of as axis_of
 from .sweeps.sweep import sweep as sweep
 
 __version__: str
+from .saved import load as load

@@ -17,9 +17,9 @@ from faying.fe.sides import sides_on
 from faying.geometry.geometry import mesh_step
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
+from faying.loads.table import terminal
 from faying.numerics.modes import lowest_modes
 from faying.numerics.solve import factorise
-from faying.output.load_cases import terminal
 from tests.geometry.test_geometry import at, named, step
 from tests.helpers.bars import even
 

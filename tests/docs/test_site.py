@@ -14,10 +14,10 @@ import pytest
 import faying
 from faying.cli.main import COMMANDS
 from faying.contact.build import kinds
+from faying.loads.record import LoadCases
 from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
-from faying.result.load_cases import LoadCases
 from faying.result.result import Result
 from faying.result.run_record import MeasuredComparison, Receptance
 

@@ -23,6 +23,7 @@ from faying.identify.identify import identify_model
 from faying.identify.noise import Losses
 from faying.identify.prediction import Prediction
 from faying.identify.sampling.ensemble import Inputs
+from faying.loads import figure as load_cases_figure
 from faying.measured.compare import compare_modes
 from faying.measured.figure import identified
 from faying.measured.frf import FRF
@@ -32,7 +33,7 @@ from faying.measured.modes import ModeSet
 from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
-from faying.result import Receptance, backbone_figure, difference_figure, load_cases_figure
+from faying.result import Receptance, backbone_figure, difference_figure
 from faying.result.backbone_record import QuasiStaticCheck
 from faying.result.difference import compare_runs
 from faying.result.run_record import MeasuredComparison
@@ -369,7 +370,7 @@ FIGURES = {
     "result/difference_figure.py:differences": lambda: difference_figure.differences(
         compare_runs(result(), two_boxes(names=("flange_1",)))
     ),
-    "result/load_cases_figure.py:figure": lambda: load_cases_figure.figure(made_cases()),
+    "loads/figure.py:figure": lambda: load_cases_figure.figure(made_cases()),
     "joint/figure.py:face_axes": lambda: whole(made_cases().plot("left_1", "flange_1")),
     "joint/figure.py:pressure_axes": lambda: whole(state().plot_pressure()),
     "joint/figure.py:structure_axes": lambda: whole(state().structure.plot()),

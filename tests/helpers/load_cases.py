@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from faying.result.load_cases import LoadCases
+from faying.loads.record import LoadCases
 
 
 def made(cases=("10 g", "left_1", "both of them, one after the other")):

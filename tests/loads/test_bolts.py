@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import faying
-from faying.answer.load_answers import of_state, solved, statics_of
 from faying.loads.acting import acting, nothing
+from faying.loads.solve import of_state, solved, statics_of
 from tests.bolt.test_solid_bolt import structure
 from tests.helpers.voxels import bolted
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import faying
-from faying.answer.load_answers import Preloaded, answers, near_factor
 from faying.case.case import Progress
 from faying.fe.bonded import bonded_mesh
 from faying.fe.interface import join
 from faying.joint.attachments import PointMass, Support
 from faying.loads.contact import LoadedContact
+from faying.loads.solve import Preloaded, answers, near_factor
 from tests.helpers.bars import AREA, LENGTH, SIMPLE, WIDTH, bars
 from tests.helpers.boxes import row
 

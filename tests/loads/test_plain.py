@@ -6,9 +6,9 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import faying
-from faying.answer.load_answers import of_state, statics_of
 from faying.joint.attachments import Support
 from faying.loads.acting import acting, nothing
+from faying.loads.solve import of_state, statics_of
 from tests.helpers.plates import STEEL, plates, stacked
 
 PRELOAD = 6e3

@@ -5,9 +5,9 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 import faying
-from faying.answer.load_answers import of_state, statics_of
 from faying.joint.attachments import Support
 from faying.loads.acting import acting, nothing
+from faying.loads.solve import of_state, statics_of
 from tests.helpers.plates import plates, stacked
 
 TINY = 1e-4  # N

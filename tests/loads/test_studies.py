@@ -9,7 +9,7 @@ import faying
 from faying.case.case import build
 from faying.cli.main import main
 from faying.fe.faces import face_centre
-from faying.output.load_cases import terminal
+from faying.loads.table import terminal
 from faying.study import Study
 from tests.helpers.studies import write
 

@@ -14,6 +14,7 @@ import faying
 from faying.contact.build import kinds
 from faying.contact.parameter import Parameter
 from faying.decks.programs import PROGRAMS
+from faying.loads.record import LoadCases, LoadIntervals
 from faying.materials import CATALOGUE
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse
@@ -21,7 +22,6 @@ from faying.result.backbone import Backbone
 from faying.result.backbone_record import QuasiStaticCheck
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
-from faying.result.load_cases import LoadCases, LoadIntervals
 from faying.result.result import Result
 from faying.result.run_record import MeasuredComparison, Receptance
 from faying.study.keys.varied import rooms

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from faying.answer.load_answers import bare
 from faying.answer.run import run
 from faying.backbones.choice import chosen, friction_of
+from faying.case.case import bare
 from faying.errors import InputError
 from faying.files import write_text
 from faying.joint.preload_case import preload_index

@@ -1,1 +1,1 @@
-"""Bolts: threads, tightening, compliance, and the sheet of VDI 2230."""
+"""Bolts: threads, tightening, compliance."""

@@ -19,7 +19,6 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.modal import ModalProblem
 from faying.joint.strength import bolt_notes, material_notes
 from faying.joint.structure import Structure
-from faying.loads.load import Displacement, Force, Pressure
 from faying.materials import Material
 from faying.measured.mapping import PointMap
 from faying.notes import Note
@@ -28,6 +27,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
+from faying.study.load import Displacement, Force, Pressure
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import show
@@ -388,3 +388,9 @@ def build(study: Study) -> Structure:
     surfaces = surfaces_of(study)
     laws = checked_laws(study, surfaces)
     return structure_of(study, checked_mesh(study), surfaces, laws)
+
+
+def bare(study: Study) -> Study:
+    """The study with its preloads and modes alone."""
+    modes = replace(study.modes, levels=(), intervals=False)
+    return replace(study, response=None, hammer=None, backbone=None, alternatives=(), modes=modes)

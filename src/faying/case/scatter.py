@@ -11,11 +11,14 @@ from faying.bolt.tightening import TIGHTENING
 from faying.case.law_range import of_joints
 from faying.distribution import Distribution
 from faying.form.machining import ASSUMED
+from faying.study.keys.bolt_sheet import BoltSheetChoice
 from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice
 from faying.study.study import Study
 
 LEVELS = np.array([0.05, 0.5, 0.95])
 ENDS = LEVELS[[0, 2]]
+DEFAULT_WAY = "torque wrench, friction estimated"  # of tightening, where nothing says it
+TWO_SIGMA = 0.02275  # probability below two standard deviations
 SCORE = 1.6449  # standard deviations from the median to these ends
 OF_PARTS = ("E", "density")
 MESH_NOTED = 5e-3  # estimated error of a frequency by the mesh that is noted
@@ -146,3 +149,18 @@ def assumed(study: Study) -> UncertainChoice:
     return UncertainChoice(
         inputs=tuple(Input(key=key, distribution=one, unit=units[key]) for key, one in found.items())
     )
+
+
+def preload_scatter(study: Study, bolt: str, choice: BoltSheetChoice) -> tuple[float, str]:
+    """Half of the range of the preload over its mean [-], and where that comes from."""
+    if choice.tightening_factor is not None:
+        return (choice.tightening_factor - 1) / (choice.tightening_factor + 1), "from tightening_factor"
+    if choice.way is not None:
+        return TIGHTENING[choice.way].scatter, f"{choice.way} ({TIGHTENING[choice.way].source})"
+    inputs = () if study.uncertain is None else study.uncertain.inputs
+    for one in inputs:
+        if one.key in (f"bolt.{bolt}.factor", "bolt.factor"):
+            low, high = one.distribution.quantile(np.array([TWO_SIGMA, 1 - TWO_SIGMA]))
+            return float((high - low) / (high + low)), "from [uncertain], two standard deviations each way"
+    way = TIGHTENING[DEFAULT_WAY]
+    return way.scatter, f"default: {DEFAULT_WAY} ({way.source})"

@@ -20,8 +20,8 @@ def command(study: Path, preload: str | None, page: Path | None, as_json: bool, 
 
     [[bolt_sheet]] gives working loads, friction and the way of tightening.
     """
-    from faying.answer.bolt_sheet import bolt_sheet
-    from faying.output import bolt_sheet as shown
+    from faying.sheet import page as shown
+    from faying.sheet.bolt_sheet import bolt_sheet
 
     with Shown("bolts", progress) as report:
         found = bolt_sheet(study, preload, report=report)

@@ -28,9 +28,9 @@ def command(
     progress: Form | None,
 ) -> None:
     """Find bolt forces, opening, pressure and slip of STUDY under each [[load]], about its preload."""
-    from faying.answer.load_cases import load_cases
-    from faying.output import load_cases as shown
-    from faying.result.load_cases_figure import figure
+    from faying.loads import table as shown
+    from faying.loads.figure import figure
+    from faying.loads.load_cases import load_cases
     from faying.style import check_ending, save
 
     if plot is not None:

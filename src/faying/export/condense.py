@@ -18,11 +18,11 @@ from faying.export.condensed import CondensedJoint, condensed_modes
 from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.support_check import check_motions
-from faying.loads.load import vector
 from faying.measured.mac import mac, partners
 from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.fields import listed
+from faying.study.load import vector
 from faying.study.study import Study
 from faying.style import Summary
 from faying.text import in_columns

@@ -1,1 +1,1 @@
-"""What a preloaded structure does under loads: forces of bolts, opening, slip."""
+"""Load cases on a preloaded structure: statics, forces of bolts, opening, slip, intervals, record, table, figure."""

@@ -14,7 +14,7 @@ from faying.fe.nodal_forces import pressure_forces, thermal_forces
 from faying.joint.attachments import nearest_node
 from faying.joint.bolted import BoltedStructure
 from faying.joint.joint import known_face
-from faying.loads.load import Displacement, Force, Load
+from faying.study.load import Displacement, Force, Load
 from faying.typing import Array
 from faying.units import show
 

@@ -13,7 +13,6 @@ from faying.errors import ReadError
 from faying.joint.attachments import PointMass, Support
 from faying.joint.modal import ModesChoice
 from faying.joint.preload_case import PreloadCase
-from faying.loads.load import Load
 from faying.materials import Material
 from faying.misuse import checked_call
 from faying.study.change import change_line, with_value
@@ -34,6 +33,7 @@ from faying.study.keys.surface import SurfaceChoice
 from faying.study.keys.tables import STUDY
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
 from faying.study.keys.uncertain import Known, UncertainChoice, extracted, read_uncertain
+from faying.study.load import Load
 from faying.study.results_folder import PLAIN, results_folder
 from faying.style import Summary
 

@@ -4,7 +4,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from faying.errors import InputError
-from faying.loads.load import (
+from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed
+from faying.study.declaration.reader import Made, Table
+from faying.study.declaration.values import number, quantity
+from faying.study.keys.face import face_name, one_face
+from faying.study.load import (
     COLDEST,
     MAX_FACTOR,
     MAX_INCREMENTS,
@@ -17,10 +21,6 @@ from faying.loads.load import (
     Vector,
     in_order,
 )
-from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed
-from faying.study.declaration.reader import Made, Table
-from faying.study.declaration.values import number, quantity
-from faying.study.keys.face import face_name, one_face
 
 LENGTH = '["0 mm", "0 mm", "0.1 mm"]'
 EXAMPLES = {"N": '["0 N", "0 N", "5 kN"]', "N*m": '["0 N*m", "20 N*m", "0 N*m"]', "m": LENGTH}

@@ -11,14 +11,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faying.answer.bolt_sheet import preload_scatter
-from faying.answer.load_answers import Preloaded, answers, at_preload
 from faying.case.case import Progress
+from faying.case.scatter import preload_scatter
 from faying.distribution import Distribution
-from faying.loads.load import Load
+from faying.loads.record import LoadCases, LoadIntervals
+from faying.loads.solve import Preloaded, answers, at_preload
 from faying.notes import Note
-from faying.result.load_cases import LoadCases, LoadIntervals
 from faying.study.keys.bolt_sheet import choice_of
+from faying.study.load import Load
 from faying.study.study import Study
 from faying.typing import Array
 

@@ -6,10 +6,10 @@ from typing import Any, get_args
 from faying.errors import ReadError
 from faying.identify.identification import Identification
 from faying.identify.prediction import Prediction
+from faying.loads.record import LoadCases
 from faying.misuse import checked_call
 from faying.result.backbone import Backbone
 from faying.result.fields import RECORD, read_tree
-from faying.result.load_cases import LoadCases
 from faying.result.result import Result
 
 Saved = Result | Backbone | Prediction | Identification | LoadCases

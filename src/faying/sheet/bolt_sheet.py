@@ -7,18 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from faying.answer.bolt_loads import BoltLoad, bolt_loads
 from faying.answer.bolt_numbers import bolt_numbers
-from faying.answer.load_answers import bare
 from faying.answer.tracks import shapes_of
 from faying.bolt.bolt import Bolt, FittedBolt
-from faying.bolt.sheet import Quantity, Row, evaluate
-from faying.bolt.sheet_steps import SHEAR, steps
 from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import Thread
-from faying.bolt.tightening import TIGHTENING
-from faying.case.case import Case, Progress
+from faying.case.case import Case, Progress, bare
 from faying.case.engine import engine_of
+from faying.case.scatter import preload_scatter
 from faying.case.solve import solve
 from faying.errors import InputError
 from faying.joint.load_path import LoadPaths, seat_ring
@@ -27,6 +23,9 @@ from faying.joint.strength import seat_limit
 from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.bolts import BoltNumbers
+from faying.sheet.bolt_loads import BoltLoad, bolt_loads
+from faying.sheet.rows import Quantity, Row, evaluate
+from faying.sheet.steps import SHEAR, steps
 from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of
 from faying.study.study import Study
 from faying.units import show
@@ -35,9 +34,7 @@ NEGATIVE = (
     "; below 0: where this load relieves the joint round the bolt, the bolt loses force too, as parts do that bend "
     "between bolts. Phi and all rows take it as found, not as 0"
 )
-DEFAULT_WAY = "torque wrench, friction estimated"
 DEFAULT_FRICTION = 0.12  # the middle of class B, 0.08 to 0.16: metal, oiled or coated (VDI 2230 Part 1:2015, Table A5)
-TWO_SIGMA = 0.02275  # probability below two standard deviations
 USED = 0.9  # of the yield stress that tightening may use (VDI 2230 Part 1:2015, R7)
 
 
@@ -250,21 +247,6 @@ def _thread(bolt: Bolt | SolidBolt) -> list[Quantity]:
         _quantity("R_p09", "0.9 times the stress at yield", "Pa", yielding and USED * yielding, graded),
         _quantity("tau_BS", "0.6 times the tensile strength", "Pa", strength and SHEAR * strength, graded),
     ]
-
-
-def preload_scatter(study: Study, bolt: str, choice: BoltSheetChoice) -> tuple[float, str]:
-    """Half of the range of the preload over its mean [-], and where that comes from."""
-    if choice.tightening_factor is not None:
-        return (choice.tightening_factor - 1) / (choice.tightening_factor + 1), "from tightening_factor"
-    if choice.way is not None:
-        return TIGHTENING[choice.way].scatter, f"{choice.way} ({TIGHTENING[choice.way].source})"
-    inputs = () if study.uncertain is None else study.uncertain.inputs
-    for one in inputs:
-        if one.key in (f"bolt.{bolt}.factor", "bolt.factor"):
-            low, high = one.distribution.quantile(np.array([TWO_SIGMA, 1 - TWO_SIGMA]))
-            return float((high - low) / (high + low)), "from [uncertain], two standard deviations each way"
-    way = TIGHTENING[DEFAULT_WAY]
-    return way.scatter, f"default: {DEFAULT_WAY} ({way.source})"
 
 
 def _tightening(study: Study, bolt: Bolt | SolidBolt, choice: BoltSheetChoice, force: float) -> list[Quantity]:

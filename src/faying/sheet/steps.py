@@ -4,7 +4,7 @@ from collections.abc import Callable
 from inspect import signature
 from math import pi, sqrt, tan
 
-from faying.bolt.sheet import Step
+from faying.sheet.rows import Step
 
 GUIDELINE = "VDI 2230 Part 1:2015"
 STRIPPING = 0.897  # C_3 for a bolt that is stronger than the tapped part (Alexander 1977), the least that it can be

@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from faying.answer.load_answers import answers, of_state, preloaded
-from faying.answer.load_intervals import intervals_of
 from faying.case.case import Progress
 from faying.errors import InputError
 from faying.joint.preload_case import preload_index
 from faying.joint.state import State
-from faying.loads.load import Load, in_order
+from faying.loads.intervals import intervals_of
+from faying.loads.record import LoadCases
+from faying.loads.solve import answers, of_state, preloaded
 from faying.misuse import checked_call
 from faying.progress import Report
-from faying.result.load_cases import LoadCases
+from faying.study.load import Load, in_order
 from faying.study.study import Study
 
 STAGES = 5  # that are reported, beside the modes of each case

@@ -2,11 +2,11 @@
 
 from html import escape
 
-from faying.answer.bolt_sheet import BoltSheet, BoltSheets
-from faying.bolt.sheet import Quantity, Row
 from faying.output import page
 from faying.output.table import Rows, text
 from faying.output.terminal import folded
+from faying.sheet.bolt_sheet import BoltSheet, BoltSheets
+from faying.sheet.rows import Quantity, Row
 from faying.text import in_columns
 from faying.units import show
 

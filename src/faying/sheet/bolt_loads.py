@@ -5,15 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.answer.load_answers import answers, at_preload, preloaded_case
 from faying.case.case import Case, Progress
 from faying.case.engine import Engine
 from faying.case.solve import LoadedCase
 from faying.errors import InputError, NotConverged
 from faying.joint.preload_case import PreloadCase
-from faying.loads.load import Load
-from faying.result.load_cases import LoadCases
+from faying.loads.record import LoadCases
+from faying.loads.solve import answers, at_preload, preloaded_case
 from faying.study.keys.bolt_sheet import choice_of
+from faying.study.load import Load
 from faying.typing import Array
 
 HEAT = "heat of "  # stands before the name of a case of which the temperatures alone act

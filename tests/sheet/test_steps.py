@@ -4,9 +4,9 @@ from math import inf, pi, sqrt, tan
 
 import pytest
 
-from faying.bolt.sheet import Quantity, Step, evaluate
-from faying.bolt.sheet_steps import endurance, engagement, reduced_stress, steps, thread_torque, working_stress
 from faying.bolt.threads import PROOF, STRENGTH, Fastener, Thread
+from faying.sheet.rows import Quantity, Step, evaluate
+from faying.sheet.steps import endurance, engagement, reduced_stress, steps, thread_torque, working_stress
 
 # thread, friction in thread and under head, preload [kN] and torque [N m] of class 8.8 at 90 % of yield
 FINE = [

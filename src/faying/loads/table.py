@@ -5,9 +5,9 @@ from textwrap import wrap
 
 import numpy as np
 
+from faying.loads.record import ENOUGH, LoadCases
 from faying.output.table import Rows, text
 from faying.output.terminal import wrapped
-from faying.result.load_cases import ENOUGH, LoadCases
 from faying.text import in_columns
 from faying.typing import Array
 from faying.units import show

@@ -10,11 +10,12 @@ import pytest
 
 import faying
 from faying import units
-from faying.answer.bolt_loads import AtPreload, BoltLoad
-from faying.answer.bolt_sheet import DEFAULT_WAY, bolt_sheet, choice_for
 from faying.answer.run import run
+from faying.case.scatter import DEFAULT_WAY, preload_scatter
 from faying.cli.main import main
-from faying.output import bolt_sheet as shown
+from faying.sheet import page as shown
+from faying.sheet.bolt_loads import AtPreload, BoltLoad
+from faying.sheet.bolt_sheet import bolt_sheet, choice_for
 from faying.study import Study
 from tests.helpers.studies import write
 
@@ -209,7 +210,7 @@ def test_units_read_well(full):
 
 
 def test_a_tapped_part_strips_by_its_shear_strength():
-    from faying.bolt.sheet_steps import engagement
+    from faying.sheet.steps import engagement
 
     d, P, tau, R = 8e-3, 1.25e-3, 200e6, 800e6
     area, d_2 = pi / 4 * (d - 0.938195 * P) ** 2, d - 0.64952 * P
@@ -226,8 +227,6 @@ def test_the_preload_is_chosen(made):
 
 
 def test_scatter_follows_the_way_of_tightening(made):
-    from faying.answer.bolt_sheet import preload_scatter
-
     hydraulic = made(bolt_sheet={"tightening": "hydraulic"})
     assert preload_scatter(hydraulic, "bolt", choice_for(hydraulic, "bolt"))[0] == 0.23
     uncertain = made(
@@ -264,7 +263,7 @@ def test_faults_of_the_table(made, table, text):
 
 
 def test_friction_of_the_bolt_counts_where_the_sheet_says_none(made):
-    from faying.answer.bolt_sheet import _tightening
+    from faying.sheet.bolt_sheet import _tightening
 
     rubbing = BOLT | {"thread_friction": 0.09, "head_friction": 0.11}
     study = made(bolt=rubbing)
@@ -410,7 +409,7 @@ def test_a_load_factor_below_0_is_explained_and_taken_as_it_is(made, monkeypatch
         thermal_gain=0.0,
     )
     monkeypatch.setattr(
-        "faying.answer.bolt_sheet.bolt_loads", lambda *_: {0: BoltLoad(least=found, mean=found, greatest=found)}
+        "faying.sheet.bolt_sheet.bolt_loads", lambda *_: {0: BoltLoad(least=found, mean=found, greatest=found)}
     )
     sheets = bolt_sheet(made())
     (sheet,) = sheets.sheets

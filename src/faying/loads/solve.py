@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.case.case import Case, Progress
+from faying.case.case import Case, Progress, bare
 from faying.case.engine import Engine, engine_of
 from faying.case.provenance import provenance
 from faying.errors import InputError
@@ -22,7 +22,7 @@ from faying.joint.support_check import check_motions, checked_preload
 from faying.loads.acting import Acting, acting, nothing
 from faying.loads.answers import NOTHING, BoltAnswers, bolt_answers, joint_answers
 from faying.loads.contact import LoadedContact
-from faying.loads.load import Load, in_order
+from faying.loads.record import LoadCases
 from faying.loads.remarks import load_notes
 from faying.loads.statics import LoadedState, LoadStatics
 from faying.measured.mac import Weighted, partners
@@ -30,9 +30,9 @@ from faying.notes import Note
 from faying.numerics.changed import UpdatedStiffness
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
-from faying.result.load_cases import LoadCases
 from faying.result.provenance import Provenance
 from faying.study.keys.bolt_sheet import choice_of
+from faying.study.load import Load, in_order
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -66,12 +66,6 @@ class Preloaded:
     notes: tuple[Note, ...] = ()
     provenance: Provenance = NOT_FROM_FILES
     head_friction: Array | None = None
-
-
-def bare(study: Study) -> Study:
-    """The study with its preloads and modes alone."""
-    modes = replace(study.modes, levels=(), intervals=False)
-    return replace(study, response=None, hammer=None, backbone=None, alternatives=(), modes=modes)
 
 
 def preloaded(study: Study, number: int, progress: Progress, *, modes: bool) -> Preloaded:

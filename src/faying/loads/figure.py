@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from faying.joint.figure import in_plane, painted_points
-from faying.result.load_cases import LoadCases
+from faying.loads.record import LoadCases
 from faying.style import WIDE, drawing, new_panels
 
 MAX_PANELS = 12  # the preload, and cases
