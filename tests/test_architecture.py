@@ -14,9 +14,9 @@ SOURCE = ROOT / "src" / "faying"
 # a room may import from rooms on earlier lines, and from itself; rooms on one line do not see each other
 ORDER = [
     {"errors"},
-    {"units", "files", "memory", "typing", "notes", "progress"},
+    {"units", "files", "memory", "typing", "notes", "progress", "apart"},
     {"checks"},
-    {"hardness", "misuse", "text", "heading", "data_sets", "typeset"},
+    {"hardness", "misuse", "text", "data_sets", "typeset"},
     {"materials", "netcdf", "columns", "distribution", "cache", "style"},
     {"numerics", "surface"},
     {"mpi", "fe", "halfspace"},

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from faying.columns import Wanted, read_list
+from faying.columns import Wanted, read_list, split_heading
 from faying.errors import InputError, ReadError
 from faying.form.gap_map import read_gap_map, read_heights
-from faying.heading import split_heading
 
 PLACE = {"origin": (0, 0, 0), "x_axis": (1, 0, 0), "y_axis": (0, 1, 0)}
 WAVY = np.array([(x, y, 1.5 * np.sin(x) + 0.3 * y) for x in range(12) for y in range(9)])  # mm, mm, um

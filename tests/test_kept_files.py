@@ -91,7 +91,7 @@ def test_foreign_netcdf_files_are_read_by_a_process_of_their_own(tmp_path, monke
     with pytest.raises(faying.ReadError, match="not a NetCDF-4 file, or is damaged"):
         netcdf.read(path)
     monkeypatch.setattr(netcdf, "seconds_for", lambda size: 0.05)
-    with pytest.raises(faying.ReadError, match="HDF5 does not come to an end with it"):
+    with pytest.raises(faying.ReadError, match="HDF5 dies on it or does not return .no end within 0 s"):
         netcdf.read(path)
 
 

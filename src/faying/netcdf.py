@@ -1,8 +1,5 @@
 """Trees of named arrays as NetCDF-4 files: the one writer and the one reader."""
 
-import os
-import pickle
-import subprocess
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
@@ -14,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from faying.apart import Died, apart
 from faying.errors import ReadError
 from faying.files import is_sealed, seal_of, write_atomically
 
@@ -130,35 +128,12 @@ def seconds_for(size: int) -> float:
 
 def _read_apart(path: Path) -> Group:
     """Read a file in a process of its own."""
-    code = "import sys, pickle, faying.netcdf as n; n.answer(sys.argv[1])"
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
-    limit = seconds_for(path.stat().st_size)
     try:
-        done = subprocess.run(
-            [sys.executable, "-c", code, str(path)], capture_output=True, timeout=limit, env=environment, check=False
-        )
-    except subprocess.TimeoutExpired:
-        raise ReadError(
-            f"{path} is damaged: HDF5 does not come to an end with it within {limit:.0f} s; make it anew"
-        ) from None
+        return apart(seconds_for(path.stat().st_size), read_here, path)
+    except Died as fault:
+        raise ReadError(f"{path} is damaged: HDF5 dies on it or does not return ({fault}); make it anew") from None
     except OSError:  # no process can be started here
         return read_here(path)
-    if done.returncode:
-        raise ReadError(f"{path} is damaged: HDF5 ended with {done.returncode} while it was read; make it anew")
-    found: Group | str = pickle.loads(done.stdout)
-    if isinstance(found, str):
-        raise ReadError(found)
-    return found
-
-
-def answer(path: str) -> None:
-    """Write the tree of a file, or why it cannot be read, to standard output, for the process that asked."""
-    found: Group | str
-    try:
-        found = read_here(Path(path))
-    except ReadError as fault:
-        found = str(fault)
-    sys.stdout.buffer.write(pickle.dumps(found))
 
 
 def read_here(path: Path) -> Group:

@@ -125,16 +125,16 @@ def test_a_mesh_beyond_the_memory_is_refused_before_it_is_made(tmp_path, monkeyp
 
 def test_a_death_of_the_cad_kernel_is_an_error(tmp_path, monkeypatch):
     """A segmentation fault in the child, as mutated files cause it, does not end this process."""
-    import faying.geometry.cad_process as cad_process
+    import faying.apart as module
 
     path = step(tmp_path, *plate_and_block())
     dying = "import os, signal, sys; os.kill(os.getpid(), signal.SIGSEGV); "
-    run = cad_process.subprocess.run
+    run = module.subprocess.run
 
     def killed(command, **given):
         return run([command[0], "-c", dying, *command[3:]], **given)
 
-    monkeypatch.setattr(cad_process.subprocess, "run", killed)
+    monkeypatch.setattr(module.subprocess, "run", killed)
     with pytest.raises(faying.ReadError, match="the CAD kernel died on it .signal 11.; repair the geometry"):
         mesh_step(path, size=8e-3)
 
@@ -152,7 +152,7 @@ def test_a_mesh_is_kept_beside_the_file_and_read_again(tmp_path, monkeypatch):
     def asked(*_, **__):
         raise AssertionError("meshed again")
 
-    monkeypatch.setattr(module, "ask", asked)
+    monkeypatch.setattr(module, "ask_kernel", asked)
     again = mesh_step(path, size=8e-3, cache=kept)
     np.testing.assert_array_equal(again.points, first.points)
     assert again.face_part == first.face_part
@@ -197,6 +197,6 @@ def test_a_mesher_that_gives_up_is_a_fault_of_the_file(tmp_path, monkeypatch):
 
     path = step(tmp_path, named(Box(Pnt(0, 0, 0), Pnt(10, 10, 10)), "box"))
     monkeypatch.setattr(OCCGeometry, "GenerateMesh", stopped)
-    request = {"path": str(path), "size": 5e-3, "local_size": {}, "selectors": {}, "snap": 0.0}
+    request = geometry._Request(file=path.name, size=5e-3, local_size={}, selectors={}, snap=0.0)
     with pytest.raises(faying.InputError, match=r"parts.step cannot be meshed with size 5 mm \(Stop in surface"):
-        geometry.mesh_answer(request)
+        geometry._mesh_arrays(path, request)

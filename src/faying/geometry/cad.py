@@ -1,15 +1,17 @@
 """The CAD kernel, OpenCASCADE in netgen: how it is loaded, and what it leaves out of a STEP file."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
+from faying.apart import Died, apart
 from faying.errors import InputError, ReadError
 from faying.geometry.products import Products, leaves, named_by_product, read_products
 from faying.notes import Note
 
+T = TypeVar("T")
 _SOLID = re.compile(r"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\s*\(")
 
 STEP = (".step", ".stp")  # suffixes of STEP files, in small letters
@@ -32,6 +34,26 @@ def kernel() -> Any:
         ways = "; ".join(f"{system}: {command}" for system, command in LIBRARIES.items())
         raise InputError(f"the CAD kernel lacks a library of the system ({fault}). Install it. {ways}") from None
     return occ
+
+
+def ask_kernel(path: Path, task: Callable[..., T], *rest: Any) -> T:
+    """What a task finds of a CAD file in a process of its own, since the kernel dies on some files.
+
+    Args:
+        path: the file, which the task takes first.
+        task: a function of a module.
+        rest: what else it takes.
+
+    Raises:
+        ReadError: the process died on the file, or what the task raised.
+        InputError: what the task raised.
+    """
+    try:
+        return apart(None, task, path.resolve(), *rest)
+    except Died as fault:
+        raise ReadError(
+            f"{path}: the CAD kernel died on it ({fault}); repair the geometry in the CAD program and export it again"
+        ) from None
 
 
 def check_head(path: Path) -> None:

@@ -1,6 +1,6 @@
 """What the faces of a geometry are: planes and cylinders, holes and shafts, neighbours, and where parts touch."""
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import combinations, pairwise
@@ -11,8 +11,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.overlap import overlap
-from faying.geometry.cad import check_head, read_parts
-from faying.geometry.cad_process import Answer, ask
+from faying.geometry.cad import ask_kernel, check_head, read_parts
 from faying.notes import Note
 from faying.style import Summary
 from faying.typing import Array, Index
@@ -232,37 +231,21 @@ def read_facts(
         InputError: there is no part to leave out, or none is left.
     """
     check_head(path)
-    request = {"path": str(path.resolve()), "points": points or {}, "overlaps": overlaps, "touching": touching}
-    request["leave_out"] = list(leave_out)
-    answer = ask(facts_answer, request, path=path)
-    facts = answer.facts
-    return GeometryFacts(
-        file=path.name,
-        parts=tuple(PartFacts(**tuples(one)) for one in facts["parts"]),
-        faces=tuple(FaceFacts(**tuples(one)) for one in facts["faces"]),
-        contacts=tuple(TouchingFaces(**tuples(one)) for one in facts["contacts"]),
-        distances=facts["distances"],
-        overlaps=tuple(facts["overlaps"]),
-        notes=tuple(Note(**one) for one in facts["notes"]),
-        corners=answer.arrays["corners"],
-        face_of=answer.arrays["face_of"],
-    )
+    return ask_kernel(path, _read_facts, points or {}, overlaps, touching, leave_out)
 
 
-def facts_answer(request: dict[str, Any]) -> Answer:
-    """Find what `read_facts` asks for; this runs in the process of its own."""
-    path = Path(request["path"])
-    cad = read_parts(path).without(request["leave_out"])
-    found = facts_of(cad.solids, cad.names, path.name, request["points"], touching=request["touching"])
-    facts: dict[str, Any] = {
-        "parts": [asdict(part) for part in found.parts],
-        "faces": [asdict(face) for face in found.faces],
-        "contacts": [asdict(contact) for contact in found.contacts],
-        "distances": found.distances,
-        "overlaps": shared_volumes(cad.solids, cad.names) if request["overlaps"] else [],
-        "notes": [asdict(note) for note in cad.notes],
-    }
-    return Answer(facts=facts, arrays={"corners": found.corners, "face_of": found.face_of})
+def _read_facts(
+    path: Path,
+    points: dict[str, tuple[str, Sequence[float]]],
+    overlaps: bool,
+    touching: bool,
+    leave_out: Sequence[str],
+) -> GeometryFacts:
+    """The facts, in a process that has the kernel."""
+    cad = read_parts(path).without(leave_out)
+    found = facts_of(cad.solids, cad.names, path.name, points, touching=touching)
+    shared = tuple(shared_volumes(cad.solids, cad.names)) if overlaps else ()
+    return replace(found, overlaps=shared, notes=cad.notes)
 
 
 def facts_of(
@@ -319,11 +302,6 @@ def facts_of(
 def _point(values: Any) -> Point:
     x, y, z = (round(float(v), 12) + 0.0 for v in values)  # what is less is rounding
     return x, y, z
-
-
-def tuples(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Fields with tuples where JSON has lists."""
-    return {name: tuple(value) if isinstance(value, list) else value for name, value in fields.items()}
 
 
 def _triangles(solid: Any) -> tuple[Array, Array, Index]:
@@ -471,18 +449,17 @@ def _apart(one: Any, two: Any) -> bool:
 
 def part_distance(path: Path) -> tuple[str, str, float] | None:
     """The two parts of a STEP file that lie nearest to each other, and their distance [m]; None for a single part."""
-    found = ask(distance_answer, {"path": str(path.resolve())}, path=path).facts
-    return None if found is None else (found[0], found[1], float(found[2]))
+    return ask_kernel(path, _part_distance)
 
 
-def distance_answer(request: dict[str, Any]) -> Answer:
-    """Find what `part_distance` asks for; this runs in the process of its own."""
-    cad = read_parts(Path(request["path"]))
+def _part_distance(path: Path) -> tuple[str, str, float] | None:
+    """The same, in a process that has the kernel."""
+    cad = read_parts(path)
     pairs = [
         (1e-3 * cad.solids[i].Distance(cad.solids[j]), cad.names[i], cad.names[j])
         for i, j in combinations(range(len(cad.solids)), 2)
     ]
     if not pairs:
-        return Answer(facts=None)
+        return None
     distance, one, two = min(pairs)
-    return Answer(facts=[one, two, distance])
+    return one, two, float(distance)

@@ -5,7 +5,7 @@ Names are those that the CAD program gave to solids, products and faces. A face 
 
 import json
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,8 @@ from faying.fe.elements import KINDS
 from faying.fe.mesh import Mesh
 from faying.fe.solids import split_at_joints
 from faying.fe.straighten import straightened
-from faying.geometry.cad import CadParts, check_head, kernel, read_parts
-from faying.geometry.cad_process import Answer, ask
-from faying.geometry.face_facts import facts_of, shared_volumes, tuples
+from faying.geometry.cad import CadParts, ask_kernel, check_head, kernel, read_parts
+from faying.geometry.face_facts import facts_of, shared_volumes
 from faying.geometry.selectors import Selector, chosen, points_of
 from faying.memory import available
 from faying.notes import Note
@@ -46,10 +45,10 @@ def _to_vtk(kind: str) -> list[int]:
 class _Request:
     """What is asked of the CAD kernel; lengths [m]."""
 
-    path: str
+    file: str
     size: float
     local_size: Mapping[str, float]
-    selectors: Mapping[str, Any]
+    selectors: Mapping[str, Selector]
     snap: float
     leave_out: Sequence[str] = ()
 
@@ -83,19 +82,18 @@ def mesh_step(
     """
     check_head(path)
     request = _Request(
-        path=str(path.resolve()),
+        file=path.name,
         size=size,
         local_size=local_size or {},
-        selectors={label: asdict(one) for label, one in (faces or {}).items()},
+        selectors=faces or {},
         snap=snap,
         leave_out=list(leave_out),
     )
 
     def made() -> dict[str, Any]:
-        answer = ask(mesh_answer, asdict(request), path=path)
-        return {"facts": np.asarray(json.dumps(answer.facts)), **answer.arrays}
+        return ask_kernel(path, _mesh_arrays, request)
 
-    plain = asdict(replace(request, path=path.name)) | {"netgen": version("netgen-mesher"), "stored": STORED}
+    plain = asdict(request) | {"netgen": version("netgen-mesher"), "stored": STORED}
     data = kept(made, cache, kind="mesh", key=json.dumps(plain, sort_keys=True), data=path.read_bytes())
     facts = json.loads(data["facts"].item())
     parts, owners = facts["parts"], facts["faces"]
@@ -109,11 +107,9 @@ def mesh_step(
     )
 
 
-def mesh_answer(given: dict[str, Any]) -> Answer:
-    """Mesh what `mesh_step` asks for; this runs in the process of its own, and whoever asked checks the mesh."""
-    request = _Request(**given)
-    path, size = Path(request.path), request.size
-    occ = kernel()
+def _mesh_arrays(path: Path, request: _Request) -> dict[str, Any]:
+    """Mesh what `mesh_step` asks for, in a process that has the kernel; whoever asked checks the mesh."""
+    size, occ = request.size, kernel()
     cad = read_parts(path).without(request.leave_out)
     solids, names, notes = cad.solids, cad.names, cad.notes
     for solid, name in zip(solids, names, strict=True):
@@ -170,15 +166,14 @@ def _meshed(glued: Any, size: float, name: str) -> Any:
 
 def _selected(cad: CadParts, request: _Request, taken: Container[str]) -> list["Mark"]:
     """Marks of the faces that the selectors mean. Raises InputError where one takes a name that the file gives."""
-    selectors = {label: Selector(**tuples(fields)) for label, fields in request.selectors.items()}
+    selectors = request.selectors
     again = [label for label in selectors if label in taken]
     if again:
         raise InputError(f"face {again[0]!r}: the file has a face of this name already; choose another name")
     if not selectors:
         return []
     touching = any(selector.touching is not None for selector in selectors.values())
-    name = Path(request.path).name
-    facts = facts_of(cad.solids, cad.names, name, points_of(selectors), touching=touching)
+    facts = facts_of(cad.solids, cad.names, request.file, points_of(selectors), touching=touching)
     out = []
     for label, selector in selectors.items():
         faces = list(cad.solids[cad.names.index(selector.part)].faces) if selector.part in cad.names else []
@@ -266,7 +261,7 @@ def _label_pieces(
             )
 
 
-def _collect(mesh: Any, parts: list[str], labels: Labels, notes: Sequence[Note]) -> Answer:
+def _collect(mesh: Any, parts: list[str], labels: Labels, notes: Sequence[Note]) -> dict[str, Any]:
     points = np.asarray(mesh.Coordinates(), float) * 1e-3
     tets = mesh.Elements3D().NumPy()
     cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1
@@ -308,7 +303,7 @@ def _collect(mesh: Any, parts: list[str], labels: Labels, notes: Sequence[Note])
     facts = {"parts": parts, "faces": face_part, "notes": [asdict(note) for note in notes]}
     arrays = {f"part{k}": blocks[name] for k, name in enumerate(parts)}
     arrays |= {f"face{k}": faces[name] for k, name in enumerate(face_part)}
-    return Answer(facts=facts, arrays={"points": new_points} | arrays)
+    return {"facts": np.asarray(json.dumps(facts)), "points": new_points} | arrays
 
 
 def _outward(points: Any, tri: Index, cells: Index) -> Index:

@@ -7,8 +7,8 @@ from math import pi
 
 import numpy as np
 
+from faying.columns import Cell, split_heading
 from faying.errors import InputError, ReadError
-from faying.heading import Cell, split_heading
 from faying.measured.frf import UNITS
 from faying.measured.uff_units import DIMENSIONS, unit_factor
 from faying.typing import Array, Complex

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from faying.columns import split_heading, states_unit
 from faying.errors import InputError, ReadError
 from faying.files import end_of, refuse_decimal_comma
-from faying.heading import split_heading, states_unit
 from faying.measured.frf import FRF, Dof
 from faying.measured.frf_table import FORM, FrfColumns, plain_layout, read_layout
 from faying.measured.uff_units import DIMENSIONS

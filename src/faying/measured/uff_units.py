@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from math import pi
 from typing import Any
 
+from faying.columns import plain_unit
 from faying.errors import InputError, ReadError
-from faying.heading import plain_unit
 from faying.units import scale
 
 # specific data types of data set 58 that concern FRFs

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.columns import line_count, table_in_one_go
+from faying.columns import line_count, split_heading, table_in_one_go
 from faying.errors import ReadError
 from faying.files import refuse_decimal_comma
-from faying.heading import split_heading
 from faying.surface.heights import BYTES, check_points
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
