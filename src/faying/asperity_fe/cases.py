@@ -14,12 +14,12 @@ from faying.netcdf import Variable
 from faying.typing import Array
 
 
-def _solved(case: AsperityCase) -> AsperityResult | FayingError:
+def _solved(number: int, case: AsperityCase) -> tuple[int, AsperityResult | FayingError]:
     """Solve in a worker; an error travels back as a value, so that the other cases go on."""
     try:
-        return case.solve()
+        return number, case.solve()
     except FayingError as fault:
-        return fault
+        return number, fault
 
 
 def solve_cases(
@@ -30,38 +30,21 @@ def solve_cases(
     processes: as many as there are cores where not given; each uses one thread. progress: called with the number of
     cases done. A case that fails gives its error in place of a result.
     """
-    from concurrent.futures import ProcessPoolExecutor, as_completed
-    from multiprocessing import get_context
+    from joblib import Parallel, delayed, parallel_config
 
     if not cases:
         raise InputError("no cases were given; the table needs at least one row")
     count = min(processes or os.cpu_count() or 1, len(cases))
     if count < 1:
         raise InputError(f"processes = {processes}; at least 1 is needed")
-    if count == 1:
-        alone: list[AsperityResult | FayingError] = []
-        for number, case in enumerate(cases):
-            alone.append(_solved(case))
+    found: dict[int, AsperityResult | FayingError] = {}
+    with parallel_config(backend="loky", inner_max_num_threads=1):
+        pool = Parallel(n_jobs=count, return_as="generator_unordered")
+        for number, result in pool(delayed(_solved)(k, case) for k, case in enumerate(cases)):
+            found[number] = result
             if progress is not None:
-                progress(number + 1)
-        return alone
-    # "spawn": the children start clean and so take the thread limits, which libraries read when they are loaded
-    names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-    before = {name: os.environ.get(name) for name in names}
-    os.environ.update(dict.fromkeys(names, "1"))
-    try:
-        with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-            futures = [pool.submit(_solved, case) for case in cases]
-            for number, _ in enumerate(as_completed(futures)):
-                if progress is not None:
-                    progress(number + 1)
-            return [future.result() for future in futures]
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+                progress(len(found))
+    return [found[k] for k in range(len(cases))]
 
 
 def write_netcdf(
