@@ -1,4 +1,4 @@
-"""Single precision, threads, order, products and memory of the half-space."""
+"""Single precision, threads, products and memory of the half-space."""
 
 import tracemalloc
 
@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from faying.errors import InputError, NotConverged
 from faying.halfspace import error_bound, solve_half_space
-from faying.halfspace.bounded import SAMPLE, _in_order
 from faying.halfspace.cells import Cells
 from faying.halfspace.conjugate import CellSystem
 from faying.halfspace.kernels import normal_kernel, shear_kernel
@@ -95,36 +94,6 @@ def test_products_do_not_grow_with_the_map(rough):
         for n in (128, 1024)
     ]
     assert counts[1] <= 1.25 * counts[0]
-
-
-@pytest.mark.parametrize("values", ["spread", "ties"])
-def test_the_value_at_a_place_is_that_of_sorting(values):
-    random, size = np.random.default_rng(3), 5 * SAMPLE
-    a = random.standard_normal(size) if values == "spread" else random.integers(0, 7, size).astype(float)
-    a[: size // 2] = np.sort(a[: size // 2])  # no even sample
-    for place in (0, 1, size // 3, size - 1):
-        assert _in_order(a, place) == np.sort(a)[place]
-
-
-def test_a_place_in_order_needs_no_sort_of_all_where_columns_differ(monkeypatch):
-    """Rows as long as a power of two: a sample at a step of a power of two would see a few of the 8,192 columns."""
-    rows = 16 * SAMPLE // 8192
-    random = np.random.default_rng(5)
-    a = (np.cos(np.arange(8192) / 300) + 0.01 * random.standard_normal((rows, 8192))).ravel()
-    sort, sizes = np.sort, []
-
-    def watched(order):
-        def seen(values, *rest, **more):
-            sizes.append(values.size)
-            return order(values, *rest, **more)
-
-        return seen
-
-    for name in ("sort", "partition"):
-        monkeypatch.setattr(np, name, watched(getattr(np, name)))
-    for place in (0, 1000, a.size // 3, a.size // 2, a.size - 1):
-        assert _in_order(a, place) == sort(a)[place]
-    assert max(sizes) < a.size / 2
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])

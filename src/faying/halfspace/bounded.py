@@ -21,13 +21,13 @@ so it bounds the distance to the solution whatever the iteration did.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import isfinite
 from typing import Any, final
 
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.halfspace.arrays import at_places, dot, parts, total
+from faying.halfspace.arrays import dot, parts, total
 from faying.halfspace.cells import Cells
 from faying.halfspace.conjugate import CellSystem, constrained_gradients
 from faying.halfspace.kernels import Kernel
@@ -41,7 +41,6 @@ HALVES = (0.5, 0.25, 0.125)
 ROUNDS = ((0.3, 20), (0.3, 10), (0.3, 10))  # root of what the last turn may gain over all; most turns
 MIN_PROJECTED = 1e-3  # share of the cells cut off by the projection below which another round is not worth its price
 ROUNDING = 3e-7  # error of a product in single precision, over the largest displacement that it gives
-SAMPLE = 1 << 16
 
 
 @final
@@ -132,23 +131,6 @@ def duality_gap(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound, lev
     return np.inf if least < 0 else gap
 
 
-def _in_order(a: AnyArray, place: int) -> float:
-    """The value that stands at this place of the array in order, by ordering what a sample leaves in question."""
-    size = int(a.shape[0])
-    if size > 4 * SAMPLE:
-        sample = a[:: size // SAMPLE | 1]  # an odd step: rows are often as long as a power of two
-        count = int(sample.shape[0])
-        middle = place * count // size
-        for far in (1000, 10_000):
-            low, high = at_places(sample, [max(middle - far, 0), min(middle + far, count - 1)])
-            low, high = -inf if middle < far else low, inf if middle + far >= count else high
-            below = sum(int(np.count_nonzero(a[s] < low)) for s in parts(a))
-            between = np.concat([a[s][(a[s] >= low) & (a[s] <= high)] for s in parts(a)])
-            if below <= place < below + int(between.shape[0]):
-                return at_places(between, [place - below])[0]
-    return at_places(a, [place])[0]
-
-
 def best_level(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound) -> float:
     """The level of the least duality gap; for bounds that vary from cell to cell, the mean over the free cells.
 
@@ -158,7 +140,8 @@ def best_level(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound) -> f
     if isinstance(upper, (int, float)) and isinstance(lower, (int, float)):
         if not isfinite(upper):
             return -_least(gradient)
-        return -_in_order(gradient, min(int((total(x) - size * lower) / (upper - lower)), size - 1))
+        place = min(int((total(x) - size * lower) / (upper - lower)), size - 1)
+        return -float(np.partition(gradient, place)[place])
     free = (x > lower) & (x < upper)
     if bool(np.any(free)):
         return -float(np.mean(gradient[free]))
@@ -238,20 +221,6 @@ class _Search:
         self.datum = 0.0
         self.g: AnyArray = problem.load  # until `run`
         self.doubt = 0.0  # what single precision may have left in g
-        self._spare: list[AnyArray] = []  # to be written anew: memory that is given back costs time to get again
-
-    def _empty(self) -> AnyArray:
-        """An array like x, with any content."""
-        return self._spare.pop() if self._spare else np.empty(self.x.shape[0], dtype=self.real)
-
-    def _over(self, *arrays: AnyArray) -> None:
-        """Keep for `_empty` what is neither x nor g."""
-        self._spare += [a for a in arrays if a is not self.x and a is not self.g]
-
-    def _take(self, x: AnyArray, g: AnyArray) -> None:
-        """Let these be x and g."""
-        old, self.x, self.g = (self.x, self.g), x, g
-        self._over(*old)
 
     def refresh(self, level: float, *, precise: bool) -> None:
         """Make the gradient from x alone."""
@@ -276,7 +245,7 @@ class _Search:
         n = self.problem.load.shape[0]
         first = np.full(n, self.total / n, dtype=self.real) if start is None else start()
         self.x = project(first, self.lower, self.upper, self.total)[0]
-        self.g = self._empty()
+        self.g = np.empty(n, dtype=self.real)
         self.refresh(0.0, precise=False)
         stuck, best, since = False, np.inf, 0
         for step in range(STEPS + 1):
@@ -325,7 +294,7 @@ class _Search:
         pace, level = self.pace, 0.0
         every = Cells(self.kernel, np.ones(self.x.shape[0], dtype=np.bool))
         for _ in range(1 if once else 12):
-            y = self._empty()
+            y = np.empty_like(self.x)
             for s in parts(y):
                 y[s] = self.x[s] - pace * self.g[s]
             y, shift = project(y, self.lower, self.upper, self.total)
@@ -340,9 +309,8 @@ class _Search:
                 for s in parts(y):
                     y[s] += self.x[s]
                 _clip(y, self.lower, self.upper)
-                self._take(y, g)
+                self.x, self.g = y, g
                 break
-            self._over(y, g)
             if curvature <= 0:
                 break
             pace *= min(max(-down / curvature, 0.1), 0.7)
@@ -385,29 +353,25 @@ class _Search:
                 break
             if least == 0.0:
                 first = first or (cells, way)
-            before = x, g
             x, g, change, left, more = self._moved(x, g, cells, way, level)
-            self._over(*before)
             energy, doubt = energy + change, doubt + more
             if energy < least:
-                self._take(x, g)
+                self.x, self.g = x, g
                 least, self.doubt, doubt, first = energy, self.doubt + doubt, 0.0, None
             few = cells.size - left.size < MIN_PROJECTED * cells.size
             cells = left
             if few or left.size < 2:
                 break
             level = -total(cells.values(g)) / cells.size
-        self._over(x, g)
         if least < 0 or first is None:
             return least < 0
         for share in HALVES:
             cells, way = first
             x, g, change, _, more = self._moved(self.x, self.g, cells, share * way, level)
             if change < 0:
-                self._take(x, g)
+                self.x, self.g = x, g
                 self.doubt += more
                 return True
-            self._over(x, g)
         return False
 
     def _way(self, g: AnyArray, cells: Cells, level: float, reduction: float, limit: int) -> AnyArray | None:
@@ -430,7 +394,7 @@ class _Search:
         """Gradient after adding v on the cells, v.A v, and what single precision may have left in the gradient."""
         before = self.g if g is None else g
         self.applications += 1
-        out = self._empty()
+        out = np.empty_like(before)
         size = float(np.max(np.abs(v))) or 1.0
         scaled = np.astype(v / size, np.float32)
         curvature = largest = 0.0
@@ -452,8 +416,7 @@ class _Search:
         """Go that way and project; returns x, g, change of energy, cells between their bounds, doubt about g."""
         old, lower, upper = cells.values(x), _at(self.lower, cells.mask), _at(self.upper, cells.mask)
         new = project(old + way, lower, upper, total(old))[0]
-        out = self._empty()
-        out[:] = x
+        out = x.copy()
         out[cells.mask] = new
         left = np.zeros(x.shape[0], dtype=np.bool)
         left[cells.mask] = (new > lower) & (new < upper)
