@@ -127,77 +127,46 @@ def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
 
 
 def _npz(path: Path) -> Any:
-    """A matrix that SciPy has saved as csr, csc, coo or bsr; every index is checked before SciPy sees it."""
-    from scipy.sparse import bsr_array, csc_array, csr_array
-
-    arrays = _members(path)
-    try:
-        kind, shape = str(arrays["format"].item().decode("ascii")), tuple(map(int, arrays["shape"]))
-        data = arrays["data"]
-        if np.iscomplexobj(data):
-            if np.any(data.imag):
-                raise InputError(f"{path} is complex; stiffness and mass are real, a loss is a matrix of its own")
-            data = data.real
-        data = np.asarray(data, dtype=float)
-        if kind == "coo":
-            rows, columns = _places(path, arrays["row"], shape[0]), _places(path, arrays["col"], shape[1])
-            return _from_entries(path, rows, columns, data, shape)
-        if kind not in ("csr", "csc", "bsr"):
-            raise ReadError(f"{path} has the form {kind}; save it as csr: scipy.sparse.save_npz(name, matrix.tocsr())")
-        block = data.shape[1:] if kind == "bsr" else (1, 1)
-        major, minor = (shape[1], shape[0]) if kind == "csc" else (shape[0] // block[0], shape[1] // block[1])
-        pointer, indices = arrays["indptr"], _places(path, arrays["indices"], minor)
-        if len(indices) != len(data) or pointer.shape != (major + 1,) or pointer[0] != 0 or pointer[-1] != len(indices):
-            raise ReadError(f"{path}: rows, indices and data do not fit each other; save it again")
-        if np.any(np.diff(pointer.astype(np.int64)) < 0):
-            raise ReadError(f"{path}: the row pointers do not rise; save it again")
-        make = {"csr": csr_array, "csc": csc_array, "bsr": bsr_array}[kind]
-        made = make((data, indices, pointer.astype(np.int64)), shape=shape).tocoo()
-        return _from_entries(path, made.row, made.col, made.data, shape)
-    except (KeyError, ValueError, TypeError, IndexError, AttributeError, UnicodeDecodeError) as fault:
-        if isinstance(fault, InputError):
-            raise
-        raise ReadError(f"{path} cannot be read as a sparse matrix of SciPy ({fault!r})") from None
-
-
-def _members(path: Path) -> dict[str, Any]:
-    """The arrays of a .npz, after their sizes have been compared with the file and with the memory."""
-    import zipfile
+    """A matrix that SciPy has saved; what SciPy would take without a word is checked."""
+    from scipy.sparse import load_npz
 
     if not path.is_file():
         raise ReadError(f"no file {path}")
-    out = {}
     try:
-        with zipfile.ZipFile(path) as archive:
-            room(sum(member.file_size for member in archive.infolist()), path.name)
-            for member in archive.infolist():
-                with archive.open(member) as stream:
-                    version = np.lib.format.read_magic(stream)
-                    read = (
-                        np.lib.format.read_array_header_1_0
-                        if version == (1, 0)
-                        else np.lib.format.read_array_header_2_0
-                    )
-                    shape, _, kind = read(stream)
-                    if int(np.prod(shape, dtype=object)) * kind.itemsize != member.file_size - stream.tell():
-                        raise ReadError(f"{path}: {member.filename} is not as long as it says; save it again")
-                with archive.open(member) as stream:
-                    name = member.filename.removesuffix(".npy")
-                    out[name] = np.lib.format.read_array(stream, allow_pickle=False)
-    except ReadError:
+        _check_members(path)
+        found = load_npz(path)
+        if found.format in ("csr", "csc", "bsr"):
+            found.check_format(full_check=True)
+        entries = found.tocoo()
+        if np.any(np.imag(entries.data)):
+            raise InputError(f"{path} is complex; stiffness and mass are real, a loss is a matrix of its own")
+        return _from_entries(path, entries.row, entries.col, np.real(entries.data).astype(float), entries.shape)
+    except InputError:
         raise
-    except Exception as fault:  # zip, zlib and header errors
-        raise ReadError(f"{path} cannot be read as a sparse matrix of SciPy ({fault})") from None
-    return out
+    except Exception as fault:  # of zip, zlib, heads of arrays and SciPy's checks
+        raise ReadError(f"{path} cannot be read as a sparse matrix of SciPy ({fault!r}); save it again") from None
 
 
-def _places(path: Path, given: Any, size: int) -> Index:
-    """Indices from 0 as whole numbers below size."""
-    if given.ndim != 1 or not np.issubdtype(given.dtype, np.integer):
-        raise ReadError(f"{path}: its indices are {given.dtype}, not a row of whole numbers; save it again")
-    if len(given) and not 0 <= given.min() <= given.max() < size:
-        raise ReadError(f"{path}: index {given.min() if given.min() < 0 else given.max()} of a matrix of {size} rows")
-    return np.asarray(given, dtype=np.int64)
+def _check_members(path: Path) -> None:
+    """Raise ReadError where an array of a .npz is shorter than it says or its indices are no whole numbers.
+
+    Raises InputError where they do not fit into the memory.
+    """
+    from zipfile import ZipFile
+
+    from numpy.lib import format as npy
+
+    with ZipFile(path) as archive:
+        room(sum(member.file_size for member in archive.infolist()), path.name)
+        for member in archive.infolist():
+            with archive.open(member) as stream:
+                read = npy.read_array_header_1_0 if npy.read_magic(stream) == (1, 0) else npy.read_array_header_2_0
+                shape, _, kind = read(stream)
+                if int(np.prod(shape, dtype=object)) * kind.itemsize != member.file_size - stream.tell():
+                    raise ReadError(f"{path}: {member.filename} is not as long as it says; save it again")
+            name = member.filename.removesuffix(".npy")
+            if name in ("indices", "indptr", "row", "col", "coords") and not np.issubdtype(kind, np.integer):
+                raise ReadError(f"{path}: its {name} are {kind}, not a row of whole numbers; save it again")
 
 
 def _from_entries(path: Path, rows: Index, columns: Index, values: Any, shape: tuple[int, ...]) -> Any:
