@@ -148,7 +148,7 @@ def _npz(path: Path) -> Any:
 
 
 def _check_members(path: Path) -> None:
-    """Raise ReadError where an array of a .npz is shorter than it says or its indices are no whole numbers.
+    """Raise ReadError where an array of a .npz is shorter than it says or its indices are not whole numbers.
 
     Raises InputError where they do not fit into the memory.
     """
