@@ -6,7 +6,6 @@ from typing import Any, Literal, final
 import numpy as np
 from scipy.fft import fft, ifft, irfft, rfft
 
-from faying.errors import InputError, shown
 from faying.typing import AnyArray, Array
 
 PART = 1 << 17  # values of a part: 1 MB in double precision, within the second cache
@@ -86,10 +85,3 @@ def sums_between(values: AnyArray, offsets: AnyArray) -> Array:
     if some.any():
         out[some] = np.add.reduceat(values, offsets[:-1][some], dtype=np.float64)
     return out
-
-
-def checked_precision(precision: Precision) -> Precision:
-    """The precision asked for. Raises InputError where there is none of this name."""
-    if not isinstance(precision, str) or precision not in ("double", "single"):
-        raise InputError(f'precision = {shown(precision)}; it must be "double" or "single"')
-    return precision

@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.checks import flag, instance, number, real, several, whole
+from faying.checks import choice, flag, instance, number, real, several, whole
 from faying.errors import InputError, NotConverged, shown
-from faying.halfspace.arrays import Arithmetic, Precision, checked_precision, deviation, parts, total
+from faying.halfspace.arrays import Arithmetic, Precision, deviation, parts, total
 from faying.halfspace.bounded import Minimum, Problem, Progress, Start, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
@@ -71,7 +71,8 @@ def solve_half_space(
         Polonsky and Keer 1999, doi:10.1016/S0043-1648(99)00113-1; Almqvist et al. 2007,
         doi:10.1016/j.triboint.2005.11.008.
     """
-    arithmetic = Arithmetic(checked_precision(precision), workers)
+    choice(precision, "precision", get_args(Precision))
+    arithmetic = Arithmetic(precision, workers)
     h, (dx, dy) = _checked_map(heights, spacing, arithmetic)
     limit = _checked_hardness(hardness, h.shape)
     E_star, tol = number(E_star, "E_star", "Pa", least=0), number(tol, "tol", least=0, greatest=1)
