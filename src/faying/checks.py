@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeVar
 from faying.errors import InputError, shown
 from faying.units import EXAMPLES, parse
 
-__all__ = ["choice", "flag", "instance", "number", "path", "real", "shown", "text", "whole"]
+__all__ = ["choice", "flag", "instance", "number", "path", "real", "several", "shown", "text", "whole"]
 
 Kind = TypeVar("Kind")
 
@@ -62,6 +62,29 @@ def number(
         allowed = _range(least, greatest, ends)
         raise InputError(f"{name} = {out:.12g}{f' {unit}' if unit else ''}; it must be {allowed}")
     return out
+
+
+def several(
+    value: object, name: str, count: int, unit: str = "", *, alike: bool = False, **allowed: Any
+) -> tuple[float, ...]:
+    """Return so many finite numbers of a list, a tuple or an array as floats.
+
+    Args:
+        value: the numbers, each as of `real`.
+        name, unit: as of `real`.
+        count: how many.
+        alike: whether one number stands for all.
+        allowed: the range of each, as of `number`.
+
+    Raises:
+        InputError: for another count, and as `number`.
+    """
+    listed = isinstance(value, list | tuple) or getattr(value, "ndim", 0) == 1
+    given: list[Any] = list(value) if listed else [value] * count if alike else []  # type: ignore[call-overload]
+    if len(given) != count:
+        words = f"{count} numbers{f' in {unit}' if unit else ''}{', or one for all' if alike else ''}"
+        raise InputError(f"{name} = {shown(value)}; give {words}")
+    return tuple(number(one, name, unit, **allowed) for one in given)
 
 
 def _example(unit: str) -> str:

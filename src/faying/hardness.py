@@ -1,12 +1,12 @@
 """How hard a metal is against small indentations: Vickers hardness as a power of the diagonal."""
 
 from dataclasses import dataclass, replace
-from math import isfinite
 from typing import Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.checks import number
 from faying.errors import InputError
 from faying.typing import Array
 
@@ -40,12 +40,9 @@ class VickersHardness:
     source: str = ""
 
     def __post_init__(self) -> None:
-        if not (isfinite(self.c1) and self.c1 > 0):
-            raise InputError(f"Vickers hardness: c1 = {self.c1:g} Pa; it must be positive, for example 6.2e9")
-        if not (isfinite(self.least) and self.least >= 0):
-            raise InputError(f"Vickers hardness: least = {self.least:g} Pa; it must be 0 or more")
-        if not abs(self.c2) < STEEPEST:
-            raise InputError(f"Vickers hardness: c2 = {self.c2:g}; it must be between -1 and 1, for example -0.25")
+        number(self.c1, "Vickers hardness: c1", "Pa", least=0)
+        number(self.least, "Vickers hardness: least", "Pa", least=0, ends="[)")
+        number(self.c2, "Vickers hardness: c2", least=-STEEPEST, greatest=STEEPEST)
 
     @classmethod
     def from_brinell(cls, brinell: float) -> Self:

@@ -153,7 +153,7 @@ def _is_array(value: object) -> bool:
 def _is_tuple(value: object, inner: tuple[Any, ...]) -> bool:
     import numpy as np
 
-    if not isinstance(value, tuple | list | np.ndarray):
+    if not isinstance(value, tuple | list | np.ndarray) or getattr(value, "ndim", 1) == 0:
         return False
     if len(inner) == 2 and inner[1] is Ellipsis:
         return all(matches(part, inner[0]) for part in value)

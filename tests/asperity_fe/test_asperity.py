@@ -212,7 +212,7 @@ def test_a_force_history_is_the_displacement_history_read_the_other_way():
     ("changes", "words"),
     [
         ({"R": -1.0}, "must be positive"),
-        ({"h_a": 21e-6}, "at most R"),
+        ({"h_a": 21e-6}, "above 0 and at most 2e-05"),
         ({"displacement": 0.8e-6}, "more than the height"),
         ({"displacement": ()}, "one positive value"),
         ({"displacement": None}, "one of them"),
@@ -221,7 +221,7 @@ def test_a_force_history_is_the_displacement_history_read_the_other_way():
         ({"displacement": (1e-7, 1e-7)}, "two turning points"),
         ({"cap": RIGID}, "cap is rigid"),
         ({"layer": STEEL}, "give both"),
-        ({"hardening": 1.0}, "tangent modulus"),
+        ({"hardening": 1.0}, "hardening = 1; it must be at least 0 and below 1"),
         ({"elements": 2}, "at least 4"),
         ({"domain": 1e-6}, "more than twice"),
     ],

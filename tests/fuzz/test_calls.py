@@ -27,6 +27,7 @@ JUNK = {
     "nested": [["a", 1], None],
     "mapping": {},
     "array": np.full((2, 3), np.nan),
+    "array of no dimension": np.array(1.0),
     "path": Path("absent.file"),
     "complex": 1j,
 }

@@ -16,7 +16,7 @@ from faying.halfspace.solve import memory_needed
 
 
 def test_the_precisions_are_listed():
-    with pytest.raises(InputError, match='precision = \'half\'; it must be "double" or "single"'):
+    with pytest.raises(InputError, match='precision = \'half\'; allowed: "double", "single"'):
         solve_half_space(np.eye(8), 1.0, E_star=1.0, pressure=0.1, precision="half")
 
 

@@ -160,7 +160,7 @@ def test_a_hammers_frf_with_the_impulse_of_its_hit_is_the_same_decay(window):
         ({"band": (70, 3000)}, "it must rise and be between 0 and 2048 Hz"),
         ({"band": (99, 101)}, "too short for a band of 2 Hz"),
         ({"quantity": "strain"}, 'give "displacement" or "velocity" or "acceleration"'),
-        ({"sampling_rate": 0.0}, "samples per second must be positive"),
+        ({"sampling_rate": 0.0}, "sampling_rate = 0 1/s; it must be positive"),
         ({"signal": [1.0, np.nan]}, "one row of finite samples"),
         ({"signal": np.random.default_rng(0).normal(size=8192)}, "noise, or more than one mode"),
     ],

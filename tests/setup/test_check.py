@@ -354,7 +354,7 @@ def test_the_mesh_counts_the_unknowns_and_is_kept_for_the_run(folder, monkeypatc
     assert not found.faults
     assert "about" not in next(one.text for one in found.findings if one.code == "expected")
     assert found.expected.basis.startswith("the unknowns are those of the mesh;")
-    monkeypatch.setattr("faying.geometry.geometry.ask", None)  # nothing is meshed again
+    monkeypatch.setattr("faying.geometry.geometry.ask_kernel", None)  # nothing is meshed again
     assert mesh_of(study.geometry).unknowns == found.expected.unknowns
 
 

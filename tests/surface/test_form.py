@@ -82,7 +82,7 @@ def test_spikes_are_counted_and_no_longer_felt():
 
 def test_degree_and_too_few_points():
     scan = Scan(heights=np.random.default_rng(0).normal(size=(20, 20)), spacing=(1e-6, 1e-6))
-    with pytest.raises(InputError, match="degree 0 to 8"):
+    with pytest.raises(InputError, match="whole number, at least 0 and at most 8"):
         levelled(scan, 9)
     z = np.full((20, 20), np.nan)
     z[0, :5] = 1.0

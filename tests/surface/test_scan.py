@@ -46,10 +46,11 @@ def test_profiles_of_a_scan_keep_the_right_spacing():
         (np.zeros((1, 5)), (1e-6, 1e-6), "too few points"),
         (np.full((3, 3), np.inf), (1e-6, 1e-6), "infinite"),
         ([["a", "b"], ["c", "d"]], (1e-6, 1e-6), "real numbers"),
-        (np.zeros((3, 3)), 1e-6, "two distances"),
+        (np.zeros((3, 3)), 1e-6, "give 2 numbers in m"),
+        (np.zeros((3, 3)), np.array(1e-6), "give 2 numbers in m"),
         (np.zeros((3, 3)), (1e-6, 0.0), "positive"),
         (np.zeros((3, 3)), (1e-6, "1 kg"), "not in a unit like m"),
-        (np.zeros((3, 3)), (1e-6, True), "dy = True; give a number in m"),
+        (np.zeros((3, 3)), (1e-6, True), "spacing \\(dx, dy\\) = True; give a number in m"),
         (np.zeros((3, 3)), (float("nan"), 1e-6), "positive"),
     ],
 )

@@ -13,6 +13,7 @@ from faying.asperity_fe.equilibrium import CapEquilibrium
 from faying.asperity_fe.mesh import cap_mesh, rim_radius
 from faying.asperity_fe.model import CapModel, build, expected_radius
 from faying.asperity_fe.result import AsperityResult, CapField, History
+from faying.checks import number
 from faying.errors import InputError, NotConverged
 from faying.materials import RIGID, ContactPair, Material
 
@@ -329,18 +330,15 @@ def _turning_points(given: float | Sequence[float] | None, name: str) -> list[fl
 def _check_shape(case: AsperityCase) -> None:
     """Refuse what cannot be meshed."""
     R, h_a, layer, thickness = case.R, case.h_a, case.layer, case.layer_thickness
-    if not (isfinite(R) and R > 0):
-        raise InputError(f"R = {R} m; the radius of the cap must be positive, for example 15e-6")
-    if not (isfinite(h_a) and 0 < h_a <= R):
-        raise InputError(f"h_a = {h_a} m with R = {R} m; the height must be above 0 and at most R (a half sphere)")
+    number(R, "R", "m", least=0)
+    number(h_a, "h_a", "m", least=0, greatest=R, ends="(]")
     if case.cap.is_rigid:
         raise InputError("the cap is rigid; it must be deformable, only the substrate may be RIGID")
     if (layer is None) != (thickness == 0) or not 0 <= thickness < inf:
         raise InputError(
             f"layer {layer.name if layer else None!r} with layer_thickness = {thickness} m; give both, or neither"
         )
-    if not 0 <= case.hardening < 1:
-        raise InputError(f"hardening = {case.hardening}; the tangent modulus over E must be in [0, 1)")
+    number(case.hardening, "hardening", least=0, greatest=1, ends="[)")
     if case.elements < 4 or (case.steps is not None and case.steps < 1):
         raise InputError(f"elements = {case.elements}, steps = {case.steps}; at least 4 elements and 1 step are needed")
     if case.domain is not None and not (

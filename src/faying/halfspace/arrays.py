@@ -6,11 +6,9 @@ from typing import Any, Literal, final
 import numpy as np
 from scipy.fft import fft, ifft, irfft, rfft
 
-from faying.errors import InputError, shown
 from faying.typing import AnyArray, Array
 
 PART = 1 << 17  # values of a part: 1 MB in double precision, within the second cache
-STRIP = 64  # columns that are stored together, at least
 Precision = Literal["double", "single"]
 
 
@@ -65,12 +63,6 @@ class Arithmetic:
         step = max(1, PART * (self.workers or 1) // shape[1])
         return [slice(k, min(k + step, shape[0])) for k in range(0, shape[0], step)]
 
-    def batches(self, shape: tuple[int, ...]) -> list[slice]:
-        """Strips that are transformed together, of a spectrum (strips, rows, width)."""
-        count, rows, width = shape
-        step = max(1, PART // 2 // (rows * width)) * (self.workers or 1)
-        return [slice(k, min(k + step, count)) for k in range(0, count, step)]
-
     def along_rows(self, x: AnyArray, length: int) -> AnyArray:
         """Transform real rows, filled up with zeros to `length`."""
         return np.asarray(rfft(x, n=length, axis=1, workers=self.workers))
@@ -80,16 +72,10 @@ class Arithmetic:
         return np.asarray(irfft(spectrum, n=length, axis=1, workers=self.workers))
 
     def along_columns(self, spectrum: AnyArray, *, back: bool = False) -> None:
-        """Transform the columns of strips (strips, rows, width) in place, or take that back."""
-        done = (ifft if back else fft)(spectrum, axis=1, overwrite_x=True, workers=self.workers)
+        """Transform columns in place, or take that back."""
+        done = (ifft if back else fft)(spectrum, axis=0, overwrite_x=True, workers=self.workers)
         if not np.may_share_memory(done, spectrum):
             spectrum[...] = done
-
-
-def strips(columns: int) -> tuple[int, int]:
-    """In how many strips of how many columns a spectrum is stored."""
-    width = -(-columns // max(1, columns // STRIP))
-    return -(-columns // width), width
 
 
 def sums_between(values: AnyArray, offsets: AnyArray) -> Array:
@@ -99,10 +85,3 @@ def sums_between(values: AnyArray, offsets: AnyArray) -> Array:
     if some.any():
         out[some] = np.add.reduceat(values, offsets[:-1][some], dtype=np.float64)
     return out
-
-
-def checked_precision(precision: Precision) -> Precision:
-    """The precision asked for. Raises InputError where there is none of this name."""
-    if not isinstance(precision, str) or precision not in ("double", "single"):
-        raise InputError(f'precision = {shown(precision)}; it must be "double" or "single"')
-    return precision

@@ -4,9 +4,7 @@ All lengths in units of the column spacing and all stresses in units of E*: the 
 that single precision serves where only a search direction is wanted.
 
 A product goes through its map three times: rows forward, columns forward, times the symbol and back, rows back. Blocks
-of rows and of columns stay in the cache meanwhile, and nothing but the spectrum is ever stored whole. Spectra and
-tables are stored in strips, a few columns each, so that columns transformed together lie together: in whole rows the
-columns of large maps are each on a page of memory of their own, and a product takes twice as long.
+of rows stay in the cache meanwhile, and nothing but the spectrum is ever stored whole.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,7 +15,7 @@ from typing import final
 
 import numpy as np
 
-from faying.halfspace.arrays import Arithmetic, strips
+from faying.halfspace.arrays import Arithmetic
 from faying.typing import AnyArray, Array
 
 DOUBLE = Arithmetic()
@@ -31,9 +29,9 @@ class Kernel:
     """A symmetric operator traction -> displacement with c components, diagonal or full in the components.
 
     shape (ny, nx) of the map; padded (my, mx), the size of its transforms: equal to shape for a periodic surface, at
-    least twice it less one for a free one. Tables of shape (c, c, strips, my // 2 + 1, width), real, hold a quarter of
-    the wave numbers, 0 beyond the last of q_x: the diagonal ones are even in q_y, the others odd. symbol, in double
-    precision, and symbol_single; inverse, in single, a positive operator near the inverse, for preconditioning.
+    least twice it less one for a free one. Tables of shape (c, c, my // 2 + 1, mx // 2 + 1), real, hold a quarter of
+    the wave numbers: the diagonal ones are even in q_y, the others odd. symbol, in double precision, and symbol_single;
+    inverse, in single, a positive operator near the inverse, for preconditioning.
     aspect: dy/dx. strength: symbol times |q|, of long waves.
     """
 
@@ -45,7 +43,6 @@ class Kernel:
     inverse: AnyArray
     strength: float
     arithmetic: Arithmetic
-    spectra: "Spectra"
 
     @property
     def components(self) -> int:
@@ -55,7 +52,7 @@ class Kernel:
     @property
     def moves_mean(self) -> bool:
         """Whether a uniform traction displaces anything."""
-        return float(self.symbol[0, 0, 0, 0, 0]) != 0
+        return float(self.symbol[0, 0, 0, 0]) != 0
 
     @property
     def own(self) -> float:
@@ -64,14 +61,22 @@ class Kernel:
         weight = [
             np.where((np.arange(n // 2 + 1) == 0) | (2 * np.arange(n // 2 + 1) == n), 1.0, 2.0) for n in self.padded
         ]
-        table = self.symbol[0, 0, ...]
-        sums = weight[0] @ table.transpose(1, 0, 2).reshape(len(weight[0]), -1)[:, : len(weight[1])] @ weight[1]
-        return float(sums / (self.padded[0] * self.padded[1]))
+        return float(weight[0] @ self.symbol[0, 0] @ weight[1] / (self.padded[0] * self.padded[1]))
 
     @cached_property
     def rows(self) -> list[slice]:
         """The blocks of rows that `stream` takes and gives."""
         return self.arithmetic.rows((self.shape[0], self.padded[1]))
+
+    def _spectra(self, kind: type) -> list[AnyArray]:
+        """One spectrum a component, with any content."""
+        my, mx = self.padded
+        return [np.empty((my, mx // 2 + 1), dtype=kind) for _ in range(self.components)]
+
+    @cached_property
+    def _work(self) -> list[AnyArray]:
+        """Spectra of products in single precision, from one to the next: new ones cost 2 to 8 % more time."""
+        return self._spectra(np.complex64)
 
     def apply(self, traction: AnyArray) -> AnyArray:
         """Displacement under traction, shape (c, ny, nx), double precision."""
@@ -90,30 +95,24 @@ class Kernel:
         takes those of the outcome. needed[i]: whether anybody wants them.
         """
         arithmetic, (my, mx), nx = self.arithmetic, self.padded, self.shape[1]
-        spectra = self.spectra.take(table)
+        spectra = self._spectra(np.complex128) if table.dtype == np.float64 else self._work
         for k, spectrum in enumerate(spectra):
-            spectrum[:, self.shape[0] :, :] = 0.0
             for i, rows in enumerate(self.rows):
                 block = read(k, i)
-                if block is None:
-                    spectrum[:, rows, :] = 0.0
-                else:
-                    self.spectra.put(spectrum, rows, arithmetic.along_rows(block, mx))
+                spectrum[rows] = 0.0 if block is None else arithmetic.along_rows(block, mx)
+            spectrum[self.shape[0] :] = 0.0
+            arithmetic.along_columns(spectrum)
         upper = my // 2 + 1
-        for some in arithmetic.batches(tuple(spectra[0].shape)):
-            strips = [spectrum[some, :, :] for spectrum in spectra]
-            for strip in strips:
-                arithmetic.along_columns(strip)
-            _multiply([s[:, :upper, :] for s in strips], table[:, :, some, :, :], 1.0)
-            if my > 2:
-                mirrored = table[:, :, some, 1 : my - upper + 1, :]
-                _multiply([s[:, upper:, :] for s in strips], mirrored[:, :, :, ::-1, :], -1.0)
-            for strip in strips:
-                arithmetic.along_columns(strip, back=True)
+        mirrored = table[:, :, 1 : my - upper + 1][:, :, ::-1]
+        for here, factors, sign in ((slice(0, upper), table, 1.0), (slice(upper, my), mirrored, -1.0)):
+            halves = [spectrum[here] for spectrum in spectra]
+            for rows in arithmetic.rows(halves[0].shape):
+                _multiply([half[rows] for half in halves], factors[:, :, rows], sign)
         for k, spectrum in enumerate(spectra):
+            arithmetic.along_columns(spectrum, back=True)
             for i, rows in enumerate(self.rows):
                 if needed is None or needed[i]:
-                    write(k, i, arithmetic.back_along_rows(self.spectra.rows(spectrum, rows), mx)[:, :nx])
+                    write(k, i, arithmetic.back_along_rows(spectrum[rows], mx)[:, :nx])
 
 
 def _multiply(spectra: list[AnyArray], table: AnyArray, sign: float) -> None:
@@ -125,40 +124,6 @@ def _multiply(spectra: list[AnyArray], table: AnyArray, sign: float) -> None:
     first = one * table[0, 0, ...] + two * (sign * table[0, 1, ...])
     two[...] = two * table[1, 1, ...] + one * (sign * table[1, 0, ...])
     one[...] = first
-
-
-@final
-class Spectra:
-    """The work arrays of a kernel's transforms; those in single precision are kept from one product to the next."""
-
-    def __init__(self, padded: tuple[int, int], components: int) -> None:
-        self._length, self._components = padded[1] // 2 + 1, components
-        number, width = strips(self._length)
-        self._shape = number, padded[0], width
-        self._kept: list[AnyArray] = []
-
-    def take(self, table: AnyArray) -> list[AnyArray]:
-        """One spectrum a component, in the precision of the table, with any content but 0 beyond the last column."""
-        if table.dtype == np.float64:
-            return [np.zeros(self._shape, dtype=np.complex128) for _ in range(self._components)]
-        if not self._kept:
-            self._kept = [np.zeros(self._shape, dtype=np.complex64) for _ in range(self._components)]
-        return self._kept
-
-    def put(self, spectrum: AnyArray, rows: slice, values: AnyArray) -> None:
-        """Store rows of values (rows, columns) in a spectrum."""
-        width = self._shape[2]
-        whole = self._length // width
-        inside = np.reshape(values[:, : whole * width], (-1, whole, width))
-        spectrum[:whole, rows, :] = np.permute_dims(inside, (1, 0, 2))
-        if whole * width < self._length:
-            spectrum[whole, rows, : self._length - whole * width] = values[:, whole * width :]
-
-    def rows(self, spectrum: AnyArray, rows: slice) -> AnyArray:
-        """Rows of a spectrum, (rows, columns)."""
-        strips, _, width = self._shape
-        inside = np.permute_dims(spectrum[:, rows, :], (1, 0, 2))
-        return np.reshape(inside, (-1, strips * width))[:, : self._length]
 
 
 def transform_shape(shape: tuple[int, int], *, periodic: bool) -> tuple[int, int]:
@@ -237,7 +202,7 @@ def _assembled(
     strength: float,
     arithmetic: Arithmetic,
 ) -> Kernel:
-    symbol, inverse = (_in_strips(table, strips(padded[1] // 2 + 1)) for table in tables)
+    symbol, inverse = tables
     single = np.float32
     return Kernel(
         shape=shape,
@@ -248,18 +213,7 @@ def _assembled(
         inverse=np.asarray(inverse.astype(np.float32), dtype=single),
         strength=strength,
         arithmetic=arithmetic,
-        spectra=Spectra(padded, len(symbol)),
     )
-
-
-def _in_strips(table: Array, strips: tuple[int, int]) -> Array:
-    """A table (c, c, rows, columns) as the kernel holds it, (c, c, strips, rows, width)."""
-    number, width = strips
-    out = np.zeros((*table.shape[:2], number, table.shape[2], width))
-    for k in range(number):
-        part = table[..., k * width : (k + 1) * width]
-        out[:, :, k, :, : part.shape[-1]] = part
-    return out
 
 
 def _inverse(q: Array) -> Array:

@@ -6,6 +6,7 @@ from typing import final
 
 import numpy as np
 
+from faying.checks import number
 from faying.errors import InputError
 from faying.halfspace.bounded import Problem, minimise
 from faying.halfspace.kernels import shear_kernel
@@ -92,10 +93,8 @@ def slip_of(contact: ContactMaps, shear_ratio: float, friction: float, *, tol: f
 
 
 def _check(shear_ratio: float, friction: float) -> None:
-    if not (isfinite(friction) and friction > 0):
-        raise InputError(f"friction = {friction}; the coefficient must be positive, for example 0.2")
-    if not shear_ratio >= 0:
-        raise InputError(f"shear_ratio = {shear_ratio}; it must be 0 or more, and below 1")
+    number(friction, "friction", least=0)
+    number(shear_ratio, "shear_ratio", least=0, ends="[)")
     if shear_ratio >= 1:
         raise InputError(
             f"shear_ratio = {shear_ratio}: at T = mu F and above the joint slips everywhere; "

@@ -2,15 +2,14 @@
 
 from dataclasses import dataclass
 from functools import partial
-from math import isfinite, isnan
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.checks import flag, instance, number, real, whole
+from faying.checks import choice, flag, instance, number, real, several, whole
 from faying.errors import InputError, NotConverged, shown
-from faying.halfspace.arrays import Arithmetic, Precision, checked_precision, deviation, parts, total
+from faying.halfspace.arrays import Arithmetic, Precision, deviation, parts, total
 from faying.halfspace.bounded import Minimum, Problem, Progress, Start, best_level, duality_gap, minimise
 from faying.halfspace.kernels import normal_kernel, transform_shape
 from faying.halfspace.solution import HalfSpaceContact
@@ -72,11 +71,12 @@ def solve_half_space(
         Polonsky and Keer 1999, doi:10.1016/S0043-1648(99)00113-1; Almqvist et al. 2007,
         doi:10.1016/j.triboint.2005.11.008.
     """
-    arithmetic = Arithmetic(checked_precision(precision), workers)
+    choice(precision, "precision", get_args(Precision))
+    arithmetic = Arithmetic(precision, workers)
     h, (dx, dy) = _checked_map(heights, spacing, arithmetic)
     limit = _checked_hardness(hardness, h.shape)
-    E_star, nu, tol = number(E_star, "E_star", "Pa", least=0), real(nu, "nu"), real(tol, "tol")
-    _check_numbers(nu, tol)
+    E_star, tol = number(E_star, "E_star", "Pa", least=0), number(tol, "tol", least=0, greatest=1)
+    nu = number(nu, "nu", least=-1, greatest=0.5, ends="(]")
     if workers is not None:
         whole(workers, "workers", least=1, greatest=4096)
     flag(periodic, "periodic")
@@ -88,9 +88,8 @@ def solve_half_space(
     problem = _Pressing(h, (dx, dy), options, progress)
     first = None if start is None else _first(start, h.shape, (dx, dy))
     if displacement is not None:
-        return _at_displacement(problem, real(displacement, "displacement", "m"), first)
-    assert pressure is not None
-    pressure = real(pressure, "pressure", "Pa")
+        return _at_displacement(problem, number(displacement, "displacement", "m", least=0, ends="[)"), first)
+    pressure = number(pressure, "pressure", "Pa", least=0, ends="[)")
     _check_pressure(pressure, limit)
     return problem.at(pressure / E_star, first)
 
@@ -300,8 +299,6 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
     """Find the pressure whose approach is the one asked for, by bracketing in ln(pressure)."""
     from scipy.optimize import brentq
 
-    if isnan(displacement) or displacement < 0 or not isfinite(displacement):
-        raise InputError(f"displacement = {displacement} m; give 0 or more, counted from first touch")
     if displacement == 0:
         return problem.at(0.0, None)
     deepest = problem.top - float(problem.heights.mean())
@@ -359,10 +356,8 @@ def _checked_map(
             f"heights: {bad} of {h.size} points are NaN or infinite; fill the missing points of the scan "
             "first, or cut out a part without gaps"
         )
-    pair = tuple(spacing) if isinstance(spacing, list | tuple | np.ndarray) else (spacing, spacing)
-    if len(pair) != 2:
-        raise InputError(f"spacing = {shown(spacing)}; give the distance between points in metres, one or (dx, dy)")
-    return _frozen(h), (number(pair[0], "spacing", "m", least=0), number(pair[1], "spacing", "m", least=0))
+    dx, dy = several(spacing, "spacing", 2, "m", alike=True, least=0)
+    return _frozen(h), (dx, dy)
 
 
 def _numbers(given: Any, name: str, kind: type = np.float64) -> Array:
@@ -392,16 +387,7 @@ def _checked_hardness(hardness: float | ArrayLike | None, shape: tuple[int, ...]
     return float(given) if given.ndim == 0 else _frozen(given.copy())
 
 
-def _check_numbers(nu: float, tol: float) -> None:
-    if not -1 < nu <= 0.5:
-        raise InputError(f"nu = {nu}; it must be in (-1, 0.5], for example 0.3")
-    if not 0 < tol < 1:
-        raise InputError(f"tol = {tol}; it must be between 0 and 1, for example 1e-6")
-
-
 def _check_pressure(pressure: float, hardness: float | Array | None) -> None:
-    if not (isfinite(pressure) and pressure >= 0):
-        raise InputError(f"pressure = {pressure} Pa; give 0 or more")
     if hardness is not None and pressure >= (most := float(np.mean(hardness))):
         raise InputError(
             f"pressure {pressure:.4g} Pa is not below the hardness {most:.4g} Pa: all of the map would be "

@@ -4,6 +4,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from faying.checks import number
 from faying.errors import InputError
 from faying.measured.frf import FRF, dofs
 from faying.misuse import checked_call, numbers
@@ -82,8 +83,7 @@ def _check(force: Array, response: Array, outputs: int, sampling_rate: float) ->
     if not np.all(np.any(force != 0, axis=1)):
         empty = int(np.argmin(np.any(force != 0, axis=1))) + 1
         raise InputError(f"the force of record {empty} is zero throughout; leave that hit out")
-    if not 0 < sampling_rate < np.inf:
-        raise InputError(f"sampling_rate = {sampling_rate}: samples per second must be positive")
+    number(sampling_rate, "sampling_rate", "1/s", least=0)
 
 
 def _check_choices(estimator: str, window: str, decay: float) -> None:

@@ -6,6 +6,7 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
+from faying.checks import number
 from faying.columns import read_columns
 from faying.errors import InputError, ReadError
 from faying.files import write_text
@@ -185,8 +186,7 @@ def ring_down(
         raise InputError(f"quantity {quantity!r}: use one of {', '.join(MOTIONS)}")
     if x.ndim != 1 or not np.all(np.isfinite(x)):
         raise InputError(f"the record has the shape {x.shape} or has NaN; give one row of finite samples")
-    if not 0 < sampling_rate < np.inf:
-        raise InputError(f"sampling_rate = {sampling_rate}: samples per second must be positive")
+    number(sampling_rate, "sampling_rate", "1/s", least=0)
     _check_band(band, sampling_rate / 2)
     x = x[round(start * sampling_rate) :]
     padded = 2 * len(x)  # so that the end does not wrap round onto the beginning
@@ -224,8 +224,7 @@ def ring_down_of_frf(
     Raises:
         InputError: as `ring_down`.
     """
-    if not 0 < impulse < np.inf:
-        raise InputError(f"impulse = {impulse}: give the impulse of the hit [N s], positive")
+    number(impulse, "impulse of the hit", "N*s", least=0)
     _check_band(band, float(frf.frequency[-1]))
     values, step = frf.values[output, input], frf.step
     if not np.all(np.isfinite(values)):

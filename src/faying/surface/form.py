@@ -6,7 +6,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from faying.errors import InputError, shown
+from faying.checks import whole
+from faying.errors import InputError
 from faying.surface.heights import AreaHeights, LineHeights, usable
 from faying.typing import Array, Mask
 
@@ -40,8 +41,7 @@ def _design(scan: AreaHeights | LineHeights, degree: int) -> list[Array]:
 
 def check_degree(degree: object) -> None:
     """Raise InputError unless a polynomial of this degree can be taken out."""
-    if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or not 0 <= degree <= 8:
-        raise InputError(f"degree = {shown(degree)}: form is removed by a polynomial of degree 0 to 8")
+    whole(degree, "degree", least=0, greatest=8)
 
 
 def levelled(scan: Lines, degree: int = 1) -> Lines:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
-from faying.checks import number, shown
+from faying.checks import several
 from faying.errors import FayingError, InputError
 from faying.surface.convention import NAMES, check_dimension, cut_factor, implied_Rq, prefactor
 from faying.surface.estimators.base import Estimate
@@ -126,9 +126,7 @@ def _limits(ready: Prepared, band: object) -> tuple[float, float] | None:
         return None
     scan = ready.scan
     longest, shortest = min(sides_of(scan)), 2 * max(steps_of(scan))
-    if not isinstance(band, list | tuple | np.ndarray) or len(band) != 2:
-        raise InputError(f"band = {shown(band)}; give the shortest and the longest wavelength in metres")
-    low, high = sorted(number(wave, "band", "m", least=0) for wave in band)
+    low, high = sorted(several(band, "band", 2, "m", least=0))
     if not (shortest * (1 - 1e-9) <= low < high <= longest * (1 + 1e-9)):
         raise InputError(
             f"band = ({low:.4g}, {high:.4g}): give wavelengths in metres between twice the spacing, "

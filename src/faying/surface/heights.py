@@ -5,7 +5,7 @@ from typing import Any, Self, final
 
 import numpy as np
 
-from faying.checks import instance, number, shown, text
+from faying.checks import instance, number, several, shown, text
 from faying.errors import InputError, ReadError
 from faying.memory import GB, available
 from faying.typing import Array
@@ -102,11 +102,7 @@ class AreaHeights(_Points):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _frozen(self.heights, 2, "Scan"))
-        if not isinstance(self.spacing, (tuple, list, np.ndarray)) or len(self.spacing) != 2:
-            raise InputError(f"Scan: spacing = {shown(self.spacing)}; give the two distances (dx, dy) in metres")
-        dx, dy = self.spacing
-        steps = number(dx, "Scan: dx", "m", least=0), number(dy, "Scan: dy", "m", least=0)
-        object.__setattr__(self, "spacing", steps)
+        object.__setattr__(self, "spacing", several(self.spacing, "Scan: spacing (dx, dy)", 2, "m", least=0))
         _describe(self)
 
     @property

@@ -5,7 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from faying.checks import flag, instance, number, shown, whole
+from faying.checks import flag, instance, number, several, shown, whole
 from faying.errors import InputError
 from faying.surface.convention import G_from_Rq, check_dimension, density, prefactor
 from faying.surface.heights import AreaHeights
@@ -31,11 +31,7 @@ def grid_of(
     if len(given) not in (1, 2):
         raise InputError(f"shape = {shown(shape)}: give (ny, nx) for a scan or n for a profile, 2 points at least")
     counts = tuple(whole(n, "shape (points)", least=2, greatest=MAX_POINTS) for n in given)
-    apart = spacing if isinstance(spacing, list | tuple) else (spacing,) * len(counts)
-    if len(apart) != len(counts):
-        raise InputError(f"spacing = {shown(spacing)}: give positive distances in metres, one or (dx, dy)")
-    steps = tuple(number(step, "spacing", "m", least=0) for step in apart)
-    return counts, steps[::-1]
+    return counts, several(spacing, "spacing", len(counts), "m", alike=True, least=0)[::-1]
 
 
 def spectral_heights(

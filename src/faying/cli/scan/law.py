@@ -1,9 +1,12 @@
 """`faying law`: the curves of one contact law, or of several on one scan, as tables, JSON, CSV and figures."""
 
+from __future__ import annotations
+
+from contextlib import nullcontext
 from dataclasses import asdict, replace
 from pathlib import Path
 from textwrap import wrap
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,6 +17,18 @@ from faying.output.terminal import folded
 from faying.text import csv_text as csv_rows
 from faying.text import json_text
 from faying.units import lengths, parse, show
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from faying.contact.auto import Choice
+    from faying.contact.build import LawKind
+    from faying.contact.law import ContactLaw
+    from faying.contact.mates import Mates
+    from faying.contact.response import Response
+    from faying.contact.two_faces import RoughPair
+    from faying.materials import ContactPair
+    from faying.typing import Array
 
 # what the table shows: heading and factor from SI
 SHOWN = {
@@ -121,13 +136,13 @@ def command(
     mates = mates_of(options, kind, pair)
     pressures = pressures_of(pressure or PRESSURES)
     several = None if all_models else [name for name in (models or "").split(",") if name.strip()]
-    if stability:
+    if stability and mates is not None:
         labels = [kind.label] if several == [] else list(mates.laws(several)[0])
         given = given_of(kind, options, settings, mates)
         click.echo(law_table.stability(mates, labels, given, float(pressures[len(pressures) // 2]), as_json))
         return
     if models or all_models:
-        if not on_scan or settings:
+        if mates is None or not on_scan or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
         files = {"csv_file": csv_file, "plot": plot, "contact_map": contact_map}
         law_table.show(mates, several, pressures, **files, as_json=as_json, conductance=options["conductance"])
@@ -135,7 +150,7 @@ def command(
     if contact_map:
         raise InputError("--contact-map needs --scan, and halfspace among --models")
     given = given_of(kind, options, settings, mates)
-    with law_table.watched(mates) as seen:
+    with nullcontext() if mates is None else law_table.watched(mates) as seen:
         choice = pick(kind, given, None, pair) if seen is None else seen.choose(kind, given)
         law = choice.law
         response = law.at_pressure(pressures if pressure is not None else reached(law, pressures))
@@ -148,14 +163,16 @@ def command(
 
         save(curves({law.name: response}), plot)
     if as_json:
-        about = {"reason": choice.reason, "mates": choice.mates} | ({"surface": facts_of(mates)} if on_scan else {})
+        about = {"reason": choice.reason, "mates": choice.mates} | (
+            {"surface": facts_of(mates)} if mates is not None and on_scan else {}
+        )
         about |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
         click.echo(json_text(document(law, response) | about))
         return
     click.echo(folded("\n".join([*heading(choice, mates), table(law, response, h)])))
 
 
-def conducted(law: Any, response: Any, pair: Any) -> Any:
+def conducted(law: ContactLaw, response: Response, pair: ContactPair) -> Array:
     """Conductance of heat [W/(m2 K)] that goes with k_n; InputError without k_n or without the conductivities."""
     from faying.contact.conductance import heat_conductance
 
@@ -164,7 +181,7 @@ def conducted(law: Any, response: Any, pair: Any) -> Any:
     return heat_conductance(response.k_n, pair)
 
 
-def heading(choice: Any, mates: Any) -> list[str]:
+def heading(choice: Choice, mates: Mates | None) -> list[str]:
     """Both faces, what the scan says of D and G, and why the law was taken."""
 
     from faying.output import table
@@ -182,14 +199,14 @@ def heading(choice: Any, mates: Any) -> list[str]:
     return [*lines, ""] if lines else []
 
 
-def facts_of(mates: Any) -> dict[str, Any]:
+def facts_of(mates: Mates) -> dict[str, Any]:
     """Numbers of both faces, as a result has them."""
     from faying.study.keys.surface import Surface
 
     return Surface(faces=mates.faces, origin=mates.faces.origin).facts()
 
 
-def mates_of(options: dict[str, Any], kind: Any, pair: Any) -> Any:
+def mates_of(options: dict[str, Any], kind: LawKind, pair: ContactPair) -> Mates | None:
     """Both faces with their materials: of --scan, read as a study does, or of --D, --G and --scan-area together.
 
     None where a law has no surface, or takes none of these numbers from one.
@@ -207,7 +224,7 @@ def mates_of(options: dict[str, Any], kind: Any, pair: Any) -> Any:
     return Mates.of_fractal(**numbers, materials=pair)
 
 
-def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> Any:
+def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> RoughPair:
     """Read, level and fit the scan of --scan, as a study does; numbers: D, G and area in place of its own."""
     from faying.contact.two_faces import COUNTERS
     from faying.study.keys.surface import SurfaceChoice
@@ -226,7 +243,7 @@ def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> Any:
     return faces
 
 
-def pair_of(options: dict[str, Any], *, needed: bool) -> Any:
+def pair_of(options: dict[str, Any], *, needed: bool) -> ContactPair:
     """Build the pair from --material, --E ... and --against; needed: whether a law takes it."""
 
     from faying.materials import ContactPair, Material, material_of
@@ -253,7 +270,9 @@ def pair_of(options: dict[str, Any], *, needed: bool) -> Any:
     return ContactPair(rough, rough if against == "same" else against)
 
 
-def given_of(kind: Any, options: dict[str, Any], settings: tuple[str, ...], mates: Any = None) -> dict[str, Any]:
+def given_of(
+    kind: LawKind, options: dict[str, Any], settings: tuple[str, ...], mates: Mates | None = None
+) -> dict[str, Any]:
     """Read the parameters of a law from --set, and from --D, --G and --scan-area where they are not those of mates.
 
     Every fault is in one message.
@@ -281,7 +300,7 @@ def given_of(kind: Any, options: dict[str, Any], settings: tuple[str, ...], mate
     return out
 
 
-def pressures_of(text: str, points: int = 19) -> Any:
+def pressures_of(text: str, points: int = 19) -> Array:
     """Read "FROM:TO", "FROM:TO:POINTS" or one pressure [Pa]; InputError otherwise."""
     import numpy as np
 
@@ -302,7 +321,7 @@ def pressures_of(text: str, points: int = 19) -> Any:
     return np.geomspace(values[0], values[1], points)
 
 
-def reached(law: Any, pressures: Any) -> Any:
+def reached(law: ContactLaw, pressures: Array) -> Array:
     """As many pressures [Pa] over the part of their range that a law covers; all of them where it covers none."""
     import numpy as np
 
@@ -313,13 +332,13 @@ def reached(law: Any, pressures: Any) -> Any:
 MAX_POINTS = 1_000_000
 
 
-def parameter_values(law: Any) -> dict[str, Any]:
+def parameter_values(law: ContactLaw) -> dict[str, Any]:
     """Return the parameters of a law as they are, by name, for print and JSON."""
     values = {name: getattr(law, name) for name in law.parameters}
     return {name: value for name, value in values.items() if isinstance(value, (int, float, str))}
 
 
-def document(law: Any, response: Any) -> dict[str, Any]:
+def document(law: ContactLaw, response: Response) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON; SI units."""
     from faying.contact.response import UNITS
 
@@ -337,7 +356,7 @@ def document(law: Any, response: Any) -> dict[str, Any]:
     }
 
 
-def table(law: Any, response: Any, h: Any = None) -> str:
+def table(law: ContactLaw, response: Response, h: Array | None = None) -> str:
     """Format the response for the terminal; * marks rows outside the validity range, with the reasons below."""
 
     quantities = response.quantities() | ({} if h is None else {"h": h})
@@ -352,8 +371,9 @@ def table(law: Any, response: Any, h: Any = None) -> str:
         while given and len(line) + len(given[0]) < WIDTH:
             line += ", " + given.pop(0)
         lines.append(line)
-    if getattr(law, "pair", None) is not None:
-        lines.append(f"  {law.pair.first.name} against {law.pair.second.name}, E* {show(law.pair.E_star, 'Pa')}")
+    pair = getattr(law, "pair", None)
+    if pair is not None:
+        lines.append(f"  {pair.first.name} against {pair.second.name}, E* {show(pair.E_star, 'Pa')}")
     lines.append("")
     if "k_n" in names:
         lines += [f"  {line}" for line in branches(law, quantities)] + [""]
@@ -377,7 +397,7 @@ def table(law: Any, response: Any, h: Any = None) -> str:
     return "\n".join(lines)
 
 
-def branches(law: Any, quantities: Any) -> list[str]:
+def branches(law: ContactLaw, quantities: Mapping[str, Array]) -> list[str]:
     """Which stiffness is which, in MPa/um."""
     if "k_load" in quantities:
         return [
@@ -388,7 +408,7 @@ def branches(law: Any, quantities: Any) -> list[str]:
     return [f"stiffness in MPa/um{f', on {branch}' if branch else ''}"]
 
 
-def csv_text(law: Any, response: Any, h: Any = None) -> str:
+def csv_text(law: ContactLaw, response: Response, h: Array | None = None) -> str:
     """Return every column with its unit, and whether the law is within its validity range."""
     from faying.contact.response import UNITS
 

@@ -1,10 +1,12 @@
 """`faying law --models`: several laws of one scan in one table and on one plot, with the factor between them."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,13 +19,21 @@ from faying.output.terminal import folded
 from faying.text import json_text
 from faying.units import show as unit
 
+if TYPE_CHECKING:
+    from faying.contact.compare import Comparison
+    from faying.contact.law import ContactLaw
+    from faying.contact.mates import Mates
+    from faying.contact.response import Response
+    from faying.materials import ContactPair
+    from faying.typing import Array
+
 SURFACE_UNITS = {"G": "m", "scan_area": "m^2", "m0": "m^2", "m4": "1/m^2", "h_rms": "m", "shortest": "m"}
 
 
 def show(
-    mates: Any,
+    mates: Mates,
     names: list[str] | None,
-    pressures: Any,
+    pressures: Array,
     *,
     as_json: bool,
     conductance: bool,
@@ -55,14 +65,14 @@ def show(
     click.echo(folded(f"mates: {mates.line}\n{table(inputs, comparison, heat)}"))
 
 
-def conducted(comparison: Any, pair: Any) -> dict[str, Any]:
+def conducted(comparison: Comparison, pair: ContactPair) -> dict[str, Array]:
     """Conductance of heat [W/(m2 K)] of every law with a stiffness, by name; InputError without conductivities."""
     from faying.contact.conductance import heat_conductance
 
     return {n: heat_conductance(r.k_n, pair) for n, r in comparison.responses.items() if r.k_n is not None}
 
 
-def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
+def draw_contact(laws: dict[str, ContactLaw], pressure: float, path: str) -> None:
     """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one is solved on the scan."""
     from faying.contact.models.half_space import HalfSpace
     from faying.halfspace.figure import contact_figure
@@ -75,16 +85,13 @@ def draw_contact(laws: dict[str, Any], pressure: float, path: str) -> None:
 
 
 @contextmanager
-def watched(mates: Any) -> Iterator[Any]:
+def watched(mates: Mates) -> Iterator[Mates]:
     """The mates, with a bar on the terminal that follows the contacts that are solved on their scan."""
-    if mates is None:
-        yield None
-        return
     with Shown("law") as report:
         yield mates.watched(lambda done, total: report("contact of the scan", done, total))
 
 
-def stability(mates: Any, names: list[str], given: Any, pressure: float, as_json: bool) -> str:
+def stability(mates: Mates, names: list[str], given: dict[str, Any], pressure: float, as_json: bool) -> str:
     """One row per law: k_n on the whole scan, and the factors by which parts and fewer points move it."""
     from faying.contact.stability import CASES, UNSTABLE
     from faying.contact.stability import stability as stability_of
@@ -118,7 +125,7 @@ def stability(mates: Any, names: list[str], given: Any, pressure: float, as_json
     return "\n".join([*lines, *without])
 
 
-def document(inputs: Any, comparison: Any, heat: dict[str, Any]) -> dict[str, Any]:
+def document(inputs: Any, comparison: Comparison, heat: dict[str, Array]) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON; SI."""
     from faying.contact.response import UNITS
     from faying.result.fields import listed
@@ -141,7 +148,7 @@ def document(inputs: Any, comparison: Any, heat: dict[str, Any]) -> dict[str, An
     }
 
 
-def table(inputs: Any, comparison: Any, heat: dict[str, Any]) -> str:
+def table(inputs: Any, comparison: Comparison, heat: dict[str, Array]) -> str:
     """Format area, k_n and h of every law at a few pressures, and the factor between the laws."""
     import numpy as np
 
@@ -175,13 +182,13 @@ def table(inputs: Any, comparison: Any, heat: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _row(name: str, values: Any, form: str = ".4g", marks: Sequence[str] = ()) -> str:
+def _row(name: str, values: Array, form: str = ".4g", marks: Sequence[str] = ()) -> str:
     """A name with numbers, each with its mark; a dash where there is none."""
     cells = ["-" if value != value else format(value, form) for value in values]
     return f"  {name:<12}" + "".join(f"{cell + mark:>11}" for cell, mark in zip_longest(cells, marks, fillvalue=""))
 
 
-def reasons(response: Any) -> Iterator[str]:
+def reasons(response: Response) -> Iterator[str]:
     """Return why a response leaves its validity range, with the pressures from and to; coverage shows as -."""
 
     for reason, mask in response.reasons.items():
@@ -190,7 +197,7 @@ def reasons(response: Any) -> Iterator[str]:
             yield f"{reason}, at {unit(float(p.min()), 'Pa')} to {unit(float(p.max()), 'Pa')}"
 
 
-def csv(comparison: Any, heat: dict[str, Any]) -> str:
+def csv(comparison: Comparison, heat: dict[str, Array]) -> str:
     """Return one row per law and pressure, SI, with units in the head."""
     from faying.contact.response import UNITS
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.checks import instance, number, shown
+from faying.checks import instance, several
 from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
 from faying.files import end_of
@@ -47,12 +47,8 @@ class Lateral:
 def _pair(value: Lengths, name: str) -> tuple[float, float] | None:
     if value is None:
         return None
-    given: object = value
-    pair = tuple(given) if isinstance(given, list | tuple | np.ndarray) else (given, given)
-    if len(pair) != 2:
-        raise InputError(f"{name} = {shown(value)}: give one positive length in metres or two (x, y), for example 4e-3")
-    numbers = tuple(number(length, name, "m", least=0) for length in pair)
-    return numbers[0], numbers[1]
+    x, y = several(value, name, 2, "m", alike=True, least=0)
+    return x, y
 
 
 def read_scan(
