@@ -2,10 +2,14 @@
 
 import json
 import os
+import re
+import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5netcdf
@@ -169,19 +173,76 @@ def test_shares_that_no_sampling_gives_are_refused():
 # folders
 
 
-def test_a_second_process_at_one_folder_is_refused(tmp_path):
-    sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
-    try:
-        (tmp_path / f".results.{sleeper.pid}.part").mkdir()
-        words = f"process {sleeper.pid} writes to .*results already; wait for it"
-        with pytest.raises(faying.InputError, match=words), files.together(tmp_path / "results", "give another"):
-            pass
-    finally:
-        sleeper.kill()
-        sleeper.wait()
-    with files.together(tmp_path / "results", "give another") as hidden:  # what the dead one has left is gone
+HOLDING = """
+import sys, time
+from pathlib import Path
+from faying import files
+with files.together(Path(sys.argv[1]), "give another") as hidden:
+    (hidden / "half.nc").write_text("half")
+    print("holding", flush=True)
+    time.sleep(60)
+"""
+
+
+@contextmanager
+def holder(folder, *before):
+    """A process that writes to a folder, until it is killed; before: the command that starts it."""
+    command = [*before, sys.executable, "-c", HOLDING, str(folder)]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
+        try:
+            assert process.stdout.readline() == "holding\n"
+            yield process
+        finally:
+            process.kill()
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_second_process_at_one_folder_is_refused(tmp_path, there):
+    """Its refusal names the first. What the first left when it was killed neither bars the next one nor stays."""
+    folder = tmp_path / "results"
+    if there:
+        folder.mkdir()
+    with holder(folder) as process:
+        words = f"process {process.pid} on {re.escape(socket.gethostname())} writes to .*results already; wait for it"
+        for _ in range(2):  # asking does not loosen the hold
+            with pytest.raises(faying.InputError, match=words), files.together(folder, "give another"):
+                pass
+        assert list(tmp_path.rglob("half.nc"))
+    with files.together(folder, "give another") as hidden:
         (hidden / "a.txt").write_text("a")
-    assert [one.name for one in tmp_path.iterdir()] == ["results"]
+    assert [one.name for one in tmp_path.rglob("*")] == ["results", "a.txt"]
+
+
+def test_a_process_of_another_container_is_refused_as_well(tmp_path):
+    """There the processes have other numbers, which may be those of processes here."""
+    container = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc"]
+    if not shutil.which("unshare") or subprocess.run([*container, "true"], capture_output=True, check=False).returncode:
+        pytest.skip("no name space of processes can be made here")
+    folder, words = tmp_path / "results", "writes to .*results already"
+    with holder(folder, *container):
+        with pytest.raises(faying.InputError, match=words), files.together(folder, "give another"):
+            pass
+        assert list(tmp_path.rglob("half.nc"))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+def test_outputs_that_are_not_plain_files_stay_what_they_are(tmp_path):
+    target, link = tmp_path / "file.csv", tmp_path / "link.csv"
+    target.write_text("old")
+    link.symlink_to(target)
+    files.write_text(link, "new")
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+    files.write_text(Path("/dev/null"), "nothing")
+    assert Path("/dev/null").is_char_device()
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True) as reader:
+        files.write_text(pipe, "through")
+        assert reader.communicate(timeout=10)[0] == "through"
+    assert pipe.is_fifo()
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["file.csv", "link.csv", "pipe"]
 
 
 def test_a_folder_that_appears_meanwhile_takes_the_files_in(tmp_path):
@@ -231,7 +292,7 @@ def test_a_moved_project_goes_on(tmp_path):
 def test_locks_without_the_modules_of_one_system(tmp_path, monkeypatch, hidden):
     for name in hidden:
         monkeypatch.setitem(sys.modules, name, None)
-    part_folder.locked(tmp_path, "sweep").close()
+    files.locked(tmp_path, tmp_path, "give another").close()
 
 
 # the command

@@ -1,15 +1,19 @@
 """Files that appear whole or not at all, and rows of numbers read from text."""
 
+import errno
 import hashlib
 import os
 import re
+import secrets
 import shutil
 import signal
+import socket
+import tempfile
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 from zipfile import ZipFile
 
 from faying.errors import InputError, ReadError
@@ -18,16 +22,23 @@ from faying.errors import InputError, ReadError
 def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     """Let `write` fill a temporary file beside `path` and move it there, so that no half-written file is left.
 
-    Raises InputError where the folder does not exist or the file cannot be written.
+    A link is followed, and a device or a pipe is written to. Raises InputError where the folder does not exist or the
+    file cannot be written.
     """
+    path = path.resolve() if path.is_symlink() else path
     if not path.parent.is_dir():
         raise InputError(f"no folder {path.parent} to write {path.name} in; make it first")
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    device = path.exists() and not path.is_file() and not path.is_dir()  # /dev/null, a pipe: it stays what it is
+    where = Path(tempfile.gettempdir()) if device else path.parent
+    temporary = where / f".{path.name}.{secrets.token_hex(4)}.part"
     try:
         write(temporary)
         with temporary.open("rb+") as file:  # on the disk before it is renamed, so that a power cut finds it whole
             os.fsync(file.fileno())
-        os.replace(temporary, path)
+        if device:
+            path.write_bytes(temporary.read_bytes())
+        else:
+            os.replace(temporary, path)
     except OSError as fault:
         raise InputError(f"cannot write {path}: {fault.strerror or fault}") from None
     finally:
@@ -128,8 +139,8 @@ def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Pa
     The hidden folder stands in `folder` where that exists, so that both are on one disk, else beside it. Made before
     the work, it shows in time where nothing can be written. Files of other names in `folder` stay as they are.
 
-    Two processes do not write to one folder at once: the second is refused before its work. What processes that are not
-    more have left hidden is taken away.
+    Two processes do not write to one folder at once: the second is refused before its work. What a process that ended
+    has left hidden is taken away.
 
     Args:
         folder: where the files appear.
@@ -140,18 +151,17 @@ def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Pa
         InputError: the folder cannot be made, or another process writes to it; faults of writing inside it name the
             file's final place.
     """
-    name = f".{folder.name}.{os.getpid()}.part"
+    name = f".{folder.name}.part"
     if folder.is_symlink() and not folder.exists():
         raise InputError(f"{folder} is a link that leads nowhere; remove it, or {remedy}")
-    _refuse_company(folder, remedy)
+    for left in (folder / name, folder.with_name(name)):
+        if left.is_dir():
+            release(left, locked(left, folder, remedy))
     with new_folder(folder.parent, remedy):
         hidden = folder / name if folder.is_dir() else folder.with_name(name)
         if folder.exists() and not folder.is_dir():
             raise InputError(f"cannot make the folder {folder}: a file has this name; {remedy}")
-        try:
-            hidden.mkdir()
-        except OSError as fault:
-            raise InputError(f"cannot write in {hidden.parent}: {fault.strerror}; {remedy}") from None
+        lock = locked(hidden, folder, remedy)
         try:
             try:
                 yield hidden
@@ -162,9 +172,9 @@ def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Pa
                 more = f"; {', '.join(one.name for one in whole)} was written" if whole else ""
                 raise InputError(str(fault).replace(str(hidden), str(folder)) + more) from None
             with uninterrupted():
-                _appear(hidden, folder, sorted(hidden.iterdir()))
+                _appear(hidden, folder, sorted(path for path in hidden.iterdir() if path.name != LOCK))
         finally:
-            shutil.rmtree(hidden, ignore_errors=True)
+            release(hidden, lock)
 
 
 def _appear(hidden: Path, folder: Path, files: Sequence[Path]) -> None:
@@ -179,34 +189,74 @@ def _appear(hidden: Path, folder: Path, files: Sequence[Path]) -> None:
         raise InputError(f"cannot write in {folder}: {fault.strerror or fault}") from None
 
 
-def _refuse_company(folder: Path, remedy: str) -> None:
-    """Raise InputError where a process that lives writes to the folder; take away what dead ones have left."""
-    mark = re.compile(rf"\.{re.escape(folder.name)}\.(\d+)\.part")
-    for place in (folder, folder.parent):
-        with suppress(OSError):
-            for one in [path for path in place.iterdir() if path.is_dir()]:
-                found = mark.fullmatch(one.name)
-                if found is None or int(found[1]) == os.getpid():
-                    continue
-                if alive(int(found[1])):
-                    raise InputError(
-                        f"process {found[1]} writes to {folder} already; wait for it, or {remedy} (or remove {one} "
-                        "where no such process is Faying's)"
-                    )
-                shutil.rmtree(one, ignore_errors=True)
+LOCK = "lock"  # name of the file in a folder that a process holds
 
 
-def alive(process: int) -> bool:
-    """Whether a process of this number lives on this machine; True where that cannot be known."""
-    if os.name != "posix":
-        return True
+def locked(folder: Path, target: Path, remedy: str) -> IO[str]:
+    """Hold a folder until the file returned is closed or the process ends, however it ends.
+
+    The system keeps the lock, for processes of all containers and hosts that share the disk. A system or a disk without
+    such locks holds nothing.
+
+    Args:
+        folder: What is held; it is made where it does not exist.
+        target: What the work in it is for.
+        remedy: What to do in place of waiting.
+
+    Raises:
+        InputError: Another process holds it, or nothing can be written in it.
+    """
+    path = folder / LOCK
     try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except (OSError, OverflowError):
+        while True:
+            folder.mkdir(exist_ok=True)
+            file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+", encoding="utf-8")
+            if not _lock(file):
+                holder = file.read() or "another process"
+                file.close()
+                raise InputError(f"{holder} writes to {target} already; wait for it, or {remedy}")
+            with suppress(FileNotFoundError):
+                if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                    break
+            file.close()  # whoever held it has just removed it
+        file.truncate(0)
+        file.write(f"process {os.getpid()} on {socket.gethostname()}")
+        file.flush()
+    except OSError as fault:
+        with suppress(OSError):  # it holds something
+            folder.rmdir()
+        raise InputError(f"cannot write in {folder.parent}: {fault.strerror}; {remedy}") from None
+    return file
+
+
+def _lock(file: IO[str]) -> bool:
+    """Lock an open file with what the system has; False where another process holds it."""
+
+    def tried(lock: Callable[[], object]) -> bool:
+        try:
+            lock()
+        except OSError as fault:
+            return fault.errno not in (errno.EAGAIN, errno.EACCES, errno.EDEADLK)  # others: the disk has no locks
         return True
+
+    with suppress(ImportError):
+        import fcntl
+
+        return tried(lambda: fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB))
+    with suppress(ImportError):
+        import msvcrt
+
+        lock: Any = getattr(msvcrt, "locking", None)
+        return lock is None or tried(lambda: lock(file.fileno(), getattr(msvcrt, "LK_NBLCK", 2), 1))
     return True
+
+
+def release(folder: Path, lock: IO[str]) -> None:
+    """Remove a folder that is held, and let go of it."""
+    if os.name == "nt":  # where an open file cannot be removed
+        lock.close()
+    shutil.rmtree(folder, ignore_errors=True)
+    lock.close()
 
 
 @contextmanager

@@ -133,7 +133,7 @@ def test_two_sweeps_into_one_file(plan, tmp_path, monkeypatch):
 
     def meanwhile(model, builder, indices):
         monkeypatch.setattr(module, "evaluate", second)
-        with pytest.raises(faying.InputError, match="another sweep is writing to .*out.nc.part; wait for it"):
+        with pytest.raises(faying.InputError, match="writes to .*out.nc.part already; wait for it"):
             sweep(plan, axes(), tmp_path / "out.nc")
         monkeypatch.setattr(module, "evaluate", meanwhile)
         return real(model, builder, indices)

@@ -2,14 +2,13 @@
 
 import hashlib
 import json
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, Any, Self
 
 from faying import __version__
 from faying.errors import FayingError, InputError
-from faying.files import load_arrays, write_arrays, write_text
+from faying.files import load_arrays, locked, release, write_arrays, write_text
 from faying.study.study import Study
 
 
@@ -55,8 +54,7 @@ class PartFile:
     def finish(self) -> None:
         """Remove the folder: the work is done, or has kept nothing."""
         if self.folder is not None and self._lock is not None:
-            self._lock.close()
-            shutil.rmtree(self.folder, ignore_errors=True)
+            release(self.folder, self._lock)
 
 
 def _opened(out: Path, fingerprint: str, what: str) -> tuple[Path, IO[str]]:
@@ -67,15 +65,11 @@ def _opened(out: Path, fingerprint: str, what: str) -> tuple[Path, IO[str]]:
         raise InputError(f"no folder {out.parent} to write {out.name} in; make it first")
     folder = out.with_name(out.name + ".part")
     label = folder / f"{what}.json"
-    if not folder.exists():
-        try:
-            folder.mkdir()
-        except OSError as fault:
-            raise InputError(f"cannot make {folder}: {fault.strerror}; choose another output") from None
-        lock = locked(folder, what)
+    new = not folder.exists()
+    lock = locked(folder, folder, "choose another output with --out")
+    if new:
         write_text(label, json.dumps({"fingerprint": fingerprint, "version": __version__}))
         return folder, lock
-    lock = locked(folder, what)
     try:
         known = dict(json.loads(label.read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError):
@@ -102,40 +96,3 @@ def fingerprint(study: Study, *facts: object) -> str:
     for file in study.files:
         digest.update(hashlib.sha256(file.read_bytes()).digest())
     return digest.hexdigest()
-
-
-def locked(folder: Path, what: str) -> IO[str]:
-    """Hold a lock on a folder until the file returned is closed or the process ends.
-
-    Raises InputError where another process holds it. A system without such locks holds nothing.
-    """
-    try:
-        file = (folder / "lock").open("w", encoding="utf-8")
-    except OSError as fault:
-        raise InputError(f"cannot write in {folder}: {fault.strerror}; choose another output with --out") from None
-    try:
-        _lock(file)
-    except OSError:
-        file.close()
-        raise InputError(
-            f"another {what} is writing to {folder}; wait for it, or choose another output with --out"
-        ) from None
-    return file
-
-
-def _lock(file: IO[str]) -> None:
-    """Lock an open file, with what the system has. Raises OSError where another process holds it."""
-    try:
-        import fcntl
-    except ImportError:
-        pass
-    else:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return
-    try:
-        import msvcrt
-    except ImportError:
-        return
-    lock: Any = getattr(msvcrt, "locking", None)
-    if lock is not None:
-        lock(file.fileno(), getattr(msvcrt, "LK_NBLCK", 2), 1)
