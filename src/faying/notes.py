@@ -41,6 +41,7 @@ LIMITS = frozenset(
         "falls",
         "far-from-exact",
         "law-off",
+        "law-not-compared",
         "slight-preload",
         "near-proof",
         "size",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.case.law_range import LAW_RANGES
+from faying.case.law_range import law_range
 from faying.case.scatter import assumed
 from faying.errors import InputError
 from faying.result.interval_figure import intervals
@@ -139,7 +139,7 @@ def test_a_prediction_takes_the_same_table_where_the_study_says_nothing(tmp_path
     found = Study.read(study(tmp_path))
     keys = {one.key: one.distribution for one in assumed(found).inputs}
     assert set(keys) == {"joint.stiffness", "joint.tangential", *(f"bolt.{bolt.name}.factor" for bolt in found.bolts)}
-    assert keys["joint.stiffness"] == LAW_RANGES["JK"].of(soft=False)
+    assert keys["joint.stiffness"] == law_range("JK").of(soft=False)
     # faces of which nothing is said have waves, with a draw of their own in each sample
     silent = replace(found, joints=tuple(replace(joint, form=None) for joint in found.joints))
     more = {one.key for one in assumed(silent).inputs} - set(keys)

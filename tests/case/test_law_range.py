@@ -2,6 +2,7 @@
 
 import csv
 import importlib.util
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -12,12 +13,21 @@ import pytest
 from scipy.stats import t as student
 
 import faying
-from faying.case.case import checked_mesh, surfaces_of
-from faying.case.law_range import LAW_RANGES, MEASURED, SOLVED, is_soft, law_range, of_joint, of_joints
+from faying.answer.interval import law_factors, law_notes
+from faying.case.case import Case, checked_mesh, surfaces_of
+from faying.case.law_range import is_soft, law_range, of_joint, of_joints
 from faying.case.scatter import assumed
-from faying.distribution import FACTOR_SCORE
+from faying.contact.build import kinds
+from faying.contact.measured_range import OF_CURVES as MEASURED
+from faying.contact.models.jk import JK
+from faying.distribution import FACTOR_SCORE, Distribution
 from faying.study import Study
+from faying.study.keys.uncertain import Input, UncertainChoice
 
+COMPARED = {label: law_range(label) for label in kinds() if label != "auto"}
+LAW_RANGES = {label: found for label, found in COMPARED.items() if found not in (None, MEASURED)}
+SOLVED = law_range("half-space")
+ONE = Distribution(kind="normal", centre=1.0, spread=0.2)
 ROOT = Path(__file__).parents[2]
 
 
@@ -159,6 +169,25 @@ def test_the_default_law_of_a_map_has_the_range_of_the_solved_contact():
 
 
 def test_laws_without_measurements_and_measured_curves():
-    assert law_range("JS") == law_range("GW-measured") == SOLVED
-    assert law_range("WK") == LAW_RANGES["JK"]
+    """A law that nobody has compared has no number; of a curve that was measured, other pairs lie about it."""
+    for label in ("JS", "GW-measured", "WK", "MB", "YK"):
+        assert law_range(label) is None
     assert law_range("Table") == law_range("Power law") == MEASURED
+
+
+def test_a_law_that_was_not_compared_says_so_and_has_no_number(monkeypatch):
+    """The file of a law declares its range; without one there is a note in words, and no factor anywhere."""
+    study = Study.read(ROOT / "examples" / "two-blocks" / "study.toml")
+    case = Case.of(study)
+    (note,) = law_notes(case)
+    assert (note.code, of_joints(study)) == ("law-off", [LAW_RANGES["JK"].of(soft=False)])
+    monkeypatch.setattr(JK, "measured_ranges", {})
+    (note,) = law_notes(case)
+    assert (note.code, note.severity) == ("law-not-compared", "limit")
+    assert "JK was not compared with measurements" in note.text
+    assert not re.search(r"\d", note.text)
+    assert of_joints(study) == law_factors(case) == [None]
+    assert not any(one.key.endswith("stiffness") for one in assumed(study).inputs)
+    given = replace(study, uncertain=UncertainChoice(inputs=(Input(key="joint.stiffness", distribution=ONE, unit=""),)))
+    stated = law_factors(replace(case, study=given))
+    assert stated == [pytest.approx(ONE.quantile(np.array([0.05, 0.5, 0.95])).tolist())]

@@ -44,10 +44,11 @@ def intervals(
         laws = [at_median_ratio(case, joint) for joint in case.structure.joints]
         factors = law_factors(case)
         changes["middle"] = [replace(plain, laws=laws)]
-        changes["law"] = [
-            replace(plain, laws=[law.scaled(three[k]) for law, three in zip(laws, factors, strict=True)])
-            for k in (0, 2)
-        ]
+        if any(factors):
+            both = [list(zip(laws, [three and three[k] for three in factors], strict=True)) for k in (0, 2)]
+            changes["law"] = [
+                replace(plain, laws=[law.scaled(factor or 1.0) for law, factor in pairs]) for pairs in both
+            ]
         if len(case.loads) == 1:
             changes["preload"] = [replace(plain, factor=factor) for factor in _preload_factors(case)]
     try:
@@ -62,8 +63,8 @@ def intervals(
     return band, _combined(case, states, pairs, mesh, middle, band), [*draws.notes(case), *law_notes(case)]
 
 
-def law_factors(case: Case) -> list[tuple[float, float, float]]:
-    """5, 50 and 95 % of the factor on the stiffness of each joint."""
+def law_factors(case: Case) -> list[tuple[float, float, float] | None]:
+    """5, 50 and 95 % of the factor on the stiffness of each joint; None of a law that was not compared."""
     study, mesh = case.study, case.structure.mesh
     return [
         quantiles(case, f"joint.{joint.name}.stiffness", "joint.stiffness", of_joint(study, mesh, joint, surface))
@@ -72,14 +73,27 @@ def law_factors(case: Case) -> list[tuple[float, float, float]]:
 
 
 def law_notes(case: Case) -> Iterator[Note]:
-    """Say where measured joints have less than half or more than twice the stiffness of the law in the median."""
+    """Say where measured joints have less than half or more than twice the stiffness of the law in the median.
+
+    And which laws were not compared with measurements.
+    """
+    unknown: dict[str, list[str]] = {}
     found: dict[tuple[str, tuple[float, float, float]], list[str]] = {}
     known = stated(case.study.uncertain)
     laws = [joint.law for joint in case.structure.joints]
     for joint, law, factors in zip(case.study.joints, laws, law_factors(case), strict=True):
+        if factors is None:
+            unknown.setdefault(law.model.name, []).append(joint.name)
+            continue
         given = f"joint.{joint.name}.stiffness" in known or "joint.stiffness" in known
         if not (given or 1 / NOTED_RATIO <= factors[1] <= NOTED_RATIO):
             found.setdefault((law.model.name, factors), []).append(joint.name)
+    for name, names in unknown.items():
+        text = (
+            f"{', '.join(names)}: {name} was not compared with measurements, so that the intervals do not contain how "
+            "far the law is off; state joint.stiffness under [uncertain], or take a law that was compared"
+        )
+        yield Note(code="law-not-compared", joint=names[0] if len(names) == 1 else "", text=text)
     for (name, (low, middle, high)), names in found.items():
         text = (
             f"{', '.join(names)}: measured joints of such metals have {middle:.2g} times the stiffness of {name} in "
@@ -108,7 +122,8 @@ def _combined(
     found = {name: np.log(np.stack(pair) / frequencies) for name, pair in pairs.items()}
     if middle is not None:
         shift = np.log(middle / frequencies)
-        found["law"] = found["law"] - shift
+        if "law" in found:
+            found["law"] = found["law"] - shift
         if "k_t/k_n" in found:
             half = (found["k_t/k_n"][1] - found["k_t/k_n"][0]) / 2
             found["k_t/k_n"] = np.stack([shift - half, shift + half])

@@ -61,10 +61,13 @@ def half_of(springs: Springs[Interface], which: int) -> Springs[Interface]:
     return replace(springs, k_n=twice * springs.k_n, k_t=twice * springs.k_t)
 
 
-def quantiles(case: Case, own: str, common: str, table: Distribution) -> tuple[float, float, float]:
-    """5, 50 and 95 % of a number: as the study says of it or of all such numbers, else from a table."""
+def quantiles(case: Case, own: str, common: str, table: Distribution | None) -> tuple[float, float, float] | None:
+    """5, 50 and 95 % of a number: as the study says of it or of all such numbers, else from a table; None without."""
     known = stated(case.study.uncertain)
-    low, middle, high = (known.get(own) or known.get(common) or table).quantile(LEVELS)
+    found = known.get(own) or known.get(common) or table
+    if found is None:
+        return None
+    low, middle, high = found.quantile(LEVELS)
     return float(low), float(middle), float(high)
 
 
@@ -74,7 +77,9 @@ def ratios_of(case: Case, joint: FittedJoint) -> tuple[float, float, float]:
     own, common = f"joint.{joint.name}.tangential", "joint.tangential"
     if isinstance(given, int | float) and own not in known and common not in known:
         return float(given), float(given), float(given)
-    return quantiles(case, own, common, default("k_t/k_n"))
+    found = quantiles(case, own, common, default("k_t/k_n"))
+    assert found is not None
+    return found
 
 
 def at_median_ratio(case: Case, joint: FittedJoint) -> JointLaw:

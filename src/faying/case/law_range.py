@@ -1,13 +1,9 @@
 """How far the stiffness of joints lies from each law, by what was measured: the range of a law in every interval."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import log
-from typing import final
-
 from faying.case.case import checked_mesh, materials_at, part_of, surfaces_of
-from faying.contact.build import AUTO
-from faying.distribution import FACTOR_SCORE, Distribution
+from faying.contact.build import AUTO, find
+from faying.contact.measured_range import MeasuredRange
+from faying.distribution import Distribution
 from faying.fe.mesh import Mesh
 from faying.hardness import BRINELL_RANGE
 from faying.materials import Material
@@ -18,53 +14,9 @@ from faying.study.study import Study
 STEEL = 150e9  # Pa, Young's modulus above which a metal counts as steel: those that were measured have 70 to 120 or 200
 
 
-@final
-@dataclass(frozen=True, kw_only=True)
-class LawRange:
-    """Measured stiffness over that of one law: lognormal, one factor either way about a median for each class of metal.
-
-    Args:
-        hard: median where both faces are of steel or harder [-].
-        soft: median where a face is of a soft metal [-].
-        factor: from the median to 95 % [-].
-    """
-
-    hard: float
-    soft: float
-    factor: float
-
-    def of(self, *, soft: bool) -> Distribution:
-        """The factor on the stiffness of a joint."""
-        centre = self.soft if soft else self.hard
-        return Distribution(kind="lognormal", centre=centre, spread=log(self.factor) / FACTOR_SCORE)
-
-
-# by benchmarks/law_range.py, from 42 values of 20 pairs of faces of four sources (docs/theory/measured-over-laws.csv)
-SOLVED = LawRange(hard=1.4, soft=0.18, factor=5.8)
-LAW_RANGES: Mapping[str, LawRange] = {
-    "half-space": SOLVED,
-    "CMY": LawRange(hard=1.6, soft=0.16, factor=6.6),
-    "Mikic": LawRange(hard=2.6, soft=1.1, factor=3.8),
-    "GW": LawRange(hard=2.7, soft=1.1, factor=3.8),
-    "GW-CEB": LawRange(hard=3.0, soft=1.7, factor=3.8),
-    "GW-KE": LawRange(hard=2.9, soft=1.6, factor=3.8),
-    "GW-ZMC": LawRange(hard=2.8, soft=1.6, factor=3.8),
-    "GW-JG": LawRange(hard=2.9, soft=1.8, factor=3.9),
-    "Persson": LawRange(hard=4.1, soft=1.6, factor=3.9),
-    "JK": LawRange(hard=0.26, soft=0.11, factor=4.2),
-    "ME": LawRange(hard=0.20, soft=0.16, factor=4.4),
-}
-FRACTAL = "MB", "WK", "YK"  # of spots like those of JK, which stands for them
-# a measured curve: 5 to 95 % of pairs of faces of one source about their median
-MEASURED = LawRange(hard=1.0, soft=1.0, factor=3.2)
-CURVES = "Power law", "Table"
-
-
-def law_range(label: str) -> LawRange:
-    """The range of a law by its label, as in `faying models`; a law that was not compared has that of the default."""
-    if label in CURVES:
-        return MEASURED
-    return LAW_RANGES["JK"] if label in FRACTAL else LAW_RANGES.get(label, SOLVED)
+def law_range(label: str) -> MeasuredRange | None:
+    """The range of a law by its label, as in `faying models`; None for a law that was not compared."""
+    return find(label).law.measured_ranges.get(label)
 
 
 def is_soft(first: Material, second: Material) -> bool:
@@ -78,12 +30,13 @@ def is_soft(first: Material, second: Material) -> bool:
     )
 
 
-def of_joint(study: Study, mesh: Mesh, joint: JointChoice, surface: Surface) -> Distribution:
-    """The factor on the stiffness of a joint by its law and its two materials."""
-    return law_range(_label(study, joint, surface)).of(soft=is_soft(*materials_at(study, mesh, joint)))
+def of_joint(study: Study, mesh: Mesh, joint: JointChoice, surface: Surface) -> Distribution | None:
+    """The factor on the stiffness of a joint by its law and its two materials; None for a law that was not compared."""
+    found = law_range(_label(study, joint, surface))
+    return None if found is None else found.of(soft=is_soft(*materials_at(study, mesh, joint)))
 
 
-def of_joints(study: Study) -> list[Distribution]:
+def of_joints(study: Study) -> list[Distribution | None]:
     """The same of every joint, without a mesh; it is read where materials differ and a face does not name its part."""
     kinds = {is_soft(material, material) for material in map(study.materials.__getitem__, study.parts.values())}
     mesh, out = None, []
@@ -97,7 +50,8 @@ def of_joints(study: Study) -> list[Distribution]:
         else:
             mesh = mesh or checked_mesh(study)
             soft = is_soft(*materials_at(study, mesh, joint))
-        out.append(law_range(_label(study, joint, surface)).of(soft=soft))
+        found = law_range(_label(study, joint, surface))
+        out.append(None if found is None else found.of(soft=soft))
     return out
 
 

@@ -131,7 +131,7 @@ def assumed(study: Study) -> UncertainChoice:
     laws = of_joints(study)
     alike = len(set(laws)) == 1
     keys = ["joint.stiffness"] if alike else [f"joint.{joint.name}.stiffness" for joint in study.joints]
-    found = dict(zip(keys, laws, strict=not alike))
+    found = {key: law for key, law in zip(keys, laws, strict=not alike) if law is not None}
     if not any(isinstance(joint.tangential, int | float) for joint in study.joints):
         found["joint.tangential"] = default("k_t/k_n").within(0.01, 2.0, "()")[0]
     for bolt in study.bolts:

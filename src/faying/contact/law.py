@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from faying.checks import flag
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law_figure import law_plot
+from faying.contact.measured_range import MeasuredRange
 from faying.contact.parameter import FILE, Parameter, checked, checked_all
 from faying.contact.response import Response
 from faying.contact.table import PressureTable
@@ -54,6 +55,7 @@ class ContactLaw(Summary, ABC):
     It declares its `source`, its `validity` range in words and its `parameters` (all but the pair of materials). Study
     keys, command-line settings, sweep axes, checks and `faying models` follow from `parameters`. `variants` are further
     names of the model, each with parameters that it fixes. The `name` of a law that is one of them is that name.
+    `measured_ranges` says by name how far measured stiffness lies from the law; a name without entry was not compared.
     """
 
     name: ClassVar[str]
@@ -61,6 +63,7 @@ class ContactLaw(Summary, ABC):
     parameters: ClassVar[Mapping[str, Parameter]]
     validity: ClassVar[str]
     variants: ClassVar[Mapping[str, Mapping[str, object]]] = {}
+    measured_ranges: ClassVar[Mapping[str, MeasuredRange]] = {}
     geometric: ClassVar[bool] = True
     plastic_summits: ClassVar[bool] = False  # whether a surface gives it the hardness that its small spots have
 

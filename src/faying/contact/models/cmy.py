@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.law import Response, require
+from faying.contact.measured_range import MeasuredRange
 from faying.contact.models.area_fraction import OF_PROFILES, AreaFractionLaw
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
@@ -42,6 +43,7 @@ class CMY(AreaFractionLaw):
     c2: float | None = None
 
     name: ClassVar[str] = "CMY"
+    measured_ranges: ClassVar = {"CMY": MeasuredRange(hard=1.6, soft=0.16, factor=6.6)}
     source: ClassVar[str] = "doi:10.1016/0017-9310(69)90011-8"
     validity: ClassVar[str] = "isotropic rough faces, flat, whose spots yield; p/H_c from 1e-6 to 0.023; first loading"
     parameters: ClassVar = {

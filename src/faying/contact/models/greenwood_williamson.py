@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from faying.contact.asperity.base import AsperityModel, summed_model
 from faying.contact.law import ContactLaw, Response
+from faying.contact.measured_range import MeasuredRange
 from faying.contact.parameter import TEXT, Parameter
 from faying.errors import InputError
 from faying.materials import ContactPair
@@ -41,6 +42,13 @@ class GreenwoodWilliamson(ContactLaw):
     asperity: str = "Hertz"
 
     name: ClassVar[str] = "GW"
+    measured_ranges: ClassVar = {
+        "GW": MeasuredRange(hard=2.7, soft=1.1, factor=3.8),
+        "GW-CEB": MeasuredRange(hard=3.0, soft=1.7, factor=3.8),
+        "GW-KE": MeasuredRange(hard=2.9, soft=1.6, factor=3.8),
+        "GW-ZMC": MeasuredRange(hard=2.8, soft=1.6, factor=3.8),
+        "GW-JG": MeasuredRange(hard=2.9, soft=1.8, factor=3.9),
+    }
     source: ClassVar[str] = "doi:10.1098/rspa.1966.0242"
     validity: ClassVar[str] = "real area up to 0.3, separation above that of the summits' mean plane; no interaction"
     geometric: ClassVar[bool] = False

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from faying.checks import flag
 from faying.contact.inputs import HeightMap
 from faying.contact.law import ContactLaw, Response
+from faying.contact.measured_range import MeasuredRange
 from faying.contact.parameter import TABLE, TEXT, Parameter
 from faying.contact.pressure_series import PressureSeries, cached, cached_numbers, solve_series
 from faying.errors import InputError, shown
@@ -96,6 +97,7 @@ class HalfSpace(ContactLaw):
     cache: Path | None = field(default=None, repr=False, compare=False)
 
     name: ClassVar[str] = "half-space"
+    measured_ranges: ClassVar = {"half-space": MeasuredRange(hard=1.4, soft=0.18, factor=5.8)}
     source: ClassVar[str] = "doi:10.1016/S0043-1648(99)00113-1"
     parameters: ClassVar[Mapping[str, Parameter]] = {
         "scan": Parameter(TABLE, "levelled heights of the scan", surface="scan"),

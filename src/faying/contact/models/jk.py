@@ -36,6 +36,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.measured_range import MeasuredRange
 from faying.contact.models.islands import Islands
 from faying.contact.parameter import FRACTAL, GAMMA, TEXT, Parameter
 from faying.contact.substrate import (
@@ -170,6 +171,7 @@ class JK(ContactLaw):
     shear_stress: float = 0.0
 
     name: ClassVar[str] = "JK"
+    measured_ranges: ClassVar = {"JK": MeasuredRange(hard=0.26, soft=0.11, factor=4.2)}
     source: ClassVar[str] = "doi:10.3390/fractalfract8100611"
     validity: ClassVar[str] = (
         "real area up to 0.3, k_n below that of the bulk, al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9"

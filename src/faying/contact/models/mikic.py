@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.law import Response
+from faying.contact.measured_range import MeasuredRange
 from faying.contact.models.area_fraction import OF_PROFILES, AreaFractionLaw
 from faying.materials import ContactPair
 
@@ -32,6 +33,7 @@ class Mikic(AreaFractionLaw):
     pair: ContactPair
 
     name: ClassVar[str] = "Mikic"
+    measured_ranges: ClassVar = {"Mikic": MeasuredRange(hard=2.6, soft=1.1, factor=3.8)}
     source: ClassVar[str] = "doi:10.1016/0017-9310(74)90082-9"
     validity: ClassVar[str] = "isotropic rough faces, flat, whose spots stay elastic; real area from 1e-6 to 0.023"
     parameters: ClassVar = OF_PROFILES

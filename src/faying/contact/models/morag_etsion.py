@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from faying.contact.asperity.lin_lin import LinLin
 from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.measured_range import MeasuredRange
 from faying.contact.models.islands import Islands
 from faying.contact.parameter import FRACTAL_MB, Parameter
 from faying.materials import ContactPair
@@ -36,6 +37,7 @@ class MoragEtsion(ContactLaw):
     scan_area: float
 
     name: ClassVar[str] = "ME"
+    measured_ranges: ClassVar = {"ME": MeasuredRange(hard=0.2, soft=0.16, factor=4.4)}
     source: ClassVar[str] = "doi:10.1115/WTC2005-64357"
     validity: ClassVar[str] = "real area up to 0.3, largest contact within its wavelength, 2.1 <= D <= 2.9"
     parameters: ClassVar = {

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.law import ContactLaw, Response
+from faying.contact.measured_range import MeasuredRange
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import ContactPair
@@ -36,6 +37,7 @@ class Persson(ContactLaw):
     gamma: float = 0.45
 
     name: ClassVar[str] = "Persson"
+    measured_ranges: ClassVar = {"Persson": MeasuredRange(hard=4.1, soft=1.6, factor=3.9)}
     source: ClassVar[str] = "doi:10.1063/1.1388626"
     validity: ClassVar[str] = "elastic; real area up to 0.3 for the stiffness; a surface much larger than its waves"
     parameters: ClassVar = {

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from faying.checks import number
 from faying.contact.law import ContactLaw, Response, checked
+from faying.contact.measured_range import OF_CURVES
 from faying.contact.parameter import TEXT, Parameter
 
 
@@ -27,6 +28,7 @@ class PowerLaw(ContactLaw):
     origin: str = "table"
 
     name: ClassVar[str] = "Power law"
+    measured_ranges: ClassVar = {"Power law": OF_CURVES}
     source: ClassVar[str] = "isbn:978-0071496605"
     validity: ClassVar[str] = "the joint and the pressures that it was fitted to"
     parameters: ClassVar = {

@@ -13,6 +13,7 @@ from faying.checks import path as checked_path
 from faying.checks import text
 from faying.columns import read_columns
 from faying.contact.law import ContactLaw, Response, checked, require
+from faying.contact.measured_range import OF_CURVES
 from faying.contact.parameter import FILE, TABLE, TEXT, Parameter
 from faying.contact.response import UNITS
 from faying.errors import InputError, ReadError
@@ -48,6 +49,7 @@ class TabulatedLaw(ContactLaw):
     origin: str = "table"
 
     name: ClassVar[str] = "Table"
+    measured_ranges: ClassVar = {"Table": OF_CURVES}
     source: ClassVar[str] = "measured or computed curve"
     validity: ClassVar[str] = "between its first and last pressure"
     parameters: ClassVar = {
