@@ -1,47 +1,20 @@
 """Where a joint lies: the least rectangle around it, with a longer and a shorter side."""
 
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import Self
 
 import numpy as np
 
 from faying.errors import InputError
-from faying.typing import Array, Index
+from faying.fe.interface import Interface
+from faying.fe.mesh import Mesh
+from faying.geometry.face_triangles import FacePieces, FaceTriangles
+from faying.typing import Array
 
 Sides = tuple[float, float]
+Faces = Mesh | FaceTriangles  # of a mesh, or of a geometry before there is one
 SQUARE = 0.02  # relative difference of the sides below which neither is the longer one
 CURVED = 0.87  # cosine between a face's normal and its mean below which shapes in a plane say nothing of it
-
-
-class FaceNodes(Protocol):
-    """Named faces of a mesh, or of a geometry before there is one."""
-
-    @property
-    def points(self) -> Array:
-        """Nodes (n, 3) [m]."""
-
-    def face_nodes(self, name: str) -> Index:
-        """Nodes of a face, as rows of `points`."""
-
-
-class FacePoints(Protocol):
-    """Points on a face: their places (q, 3) [m], areas (q,) [m2] and normals (q, 3), and the area of all [m2]."""
-
-    @property
-    def positions(self) -> Array:
-        """Places (q, 3) [m]."""
-
-    @property
-    def weights(self) -> Array:
-        """Areas (q,) [m2]."""
-
-    @property
-    def normals(self) -> Array:
-        """Unit normals (q, 3)."""
-
-    @property
-    def area(self) -> float:
-        """Area of all [m2]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,9 +39,9 @@ class FaceAxes:
     @classmethod
     def of(
         cls,
-        mesh: FaceNodes,
+        mesh: Faces,
         faces: tuple[str, str],
-        interface: FacePoints,
+        interface: Interface | FacePieces,
         along: tuple[float, float, float] | None = None,
     ) -> Self:
         """Find the rectangle that both faces have in common; along: the direction of x in place of the longer side.
@@ -138,7 +111,7 @@ class FaceAxes:
         return np.asarray((positions - self.origin) @ np.stack([x, np.cross(self.normal, x)]).T)
 
 
-def _box(mesh: FaceNodes, faces: tuple[str, str], normal: Array, x: Array) -> tuple[Array, Array, Array, Sides]:
+def _box(mesh: Faces, faces: tuple[str, str], normal: Array, x: Array) -> tuple[Array, Array, Array, Sides]:
     """Axes, middle and sides of the box that both faces share along x; x points where its largest component is > 0."""
     x = x * np.sign(x[np.argmax(np.abs(x) > np.abs(x).max() - 1e-9)])
     y = np.cross(normal, x)
@@ -148,7 +121,7 @@ def _box(mesh: FaceNodes, faces: tuple[str, str], normal: Array, x: Array) -> tu
     return x, y, (low + high) / 2, (float(high[0] - low[0]), float(high[1] - low[1]))
 
 
-def _spacing(mesh: FaceNodes, face: str, axes: Array, middle: Array, sides: Sides) -> float:
+def _spacing(mesh: Faces, face: str, axes: Array, middle: Array, sides: Sides) -> float:
     """Distance [m] to the next node that three quarters of a face's nodes within the rectangle do not exceed."""
     from scipy.spatial import cKDTree
 
