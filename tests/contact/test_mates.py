@@ -64,6 +64,21 @@ def test_a_fit_of_one_face_gives_the_law_that_its_scan_gives():
     assert "both faces together" in repr(both)
 
 
+def test_the_fit_of_a_profile_counts_as_that_of_the_surface_it_is_cut_from():
+    """The power of a cut is the mean of |cos|^(6 - 2 D) over all directions of that of the surface, by quadrature."""
+    scan = faying.synthesize.spectral((512, 512), spacing=4e-6, D=2.3, Rq=0.6e-6, seed=0)
+    line = faying.Profile(heights=scan.heights[5] - scan.heights[5].mean(), spacing=4e-6, source="line")
+    fit = faying.fit_fractal(line)
+    angles = (np.arange(200_000) + 0.5) / 200_000 * np.pi / 2
+    share = np.mean(np.cos(angles) ** (6 - 2 * fit.D))
+    inputs = faying.Mates.of_fit(fit, scan_area=SIDE**2, materials=PAIR, of="both faces").faces.rough.inputs
+    assert (fit.D, share * (inputs.G / fit.G) ** (2 * fit.D - 4)) == (inputs.D, pytest.approx(1, rel=1e-3))
+    assert inputs.G > 1.1 * fit.G
+    by_line = faying.Mates(line, scan_area=SIDE**2, materials=PAIR)
+    by_fit = faying.Mates.of_fit(fit, scan_area=SIDE**2, materials=PAIR)
+    assert k_n(by_fit.law("jk")) == pytest.approx(k_n(by_line.law("jk")), rel=1e-12)
+
+
 def test_the_fit_of_two_scans_is_that_of_both():
     one, other = rough(1, points=192, shortest=0), rough(2, points=192, shortest=0, source="b.x3p")
     mates = faying.Mates(one, materials=PAIR, other=other)

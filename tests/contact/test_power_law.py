@@ -17,7 +17,8 @@ def test_stiffness_of_itos_mean_joint() -> None:
 
 
 @given(st.floats(1e-9, 1e-4), st.floats(0.05, 0.95), st.floats(0.01, 1))
-def test_stiffness_and_energy_belong_to_the_approach(C: float, m: float, share: float) -> None:
+def test_stiffness_and_energy_belong_to_the_approach(approach: float, m: float, share: float) -> None:
+    C = approach / PowerLaw.greatest**m
     law = PowerLaw(C=C, m=m)
     p = share * law.greatest
     u = C * p**m
@@ -46,6 +47,11 @@ def test_beyond_the_measurement() -> None:
         ({"m": 1.0}, "between 0 and 1"),
         ({"m": 0.0}, "between 0 and 1"),
         ({"greatest": -1.0}, "greatest"),
+        ({"greatest": 999.0}, "it must be at least 1000"),
+        ({"C": 1e300}, "an approach of"),
+        ({"C": 1.01e-3 / 9.8e6**0.48}, "a joint has 100 pm to 1 mm"),
+        ({"C": 0.99e-10 / 9.8e6**0.48}, "a joint has 100 pm to 1 mm"),
+        ({"C": 1e-9, "m": 1e-9}, "at most 1e\\+22 Pa/m"),
     ],
 )
 def test_parameters_out_of_range_are_refused(change: dict[str, float], message: str) -> None:

@@ -137,7 +137,7 @@ CALLS = {
         {"D": 2.4, "G": 1e-10, "pair": PAIR, "scan_area": 1e-8, "wavelength": 1e-6},
     ),
     "Persson": (contact.Persson, {"slope": 0.1, "h_rms": 1e-6, "pair": PAIR}),
-    "PowerLaw": (contact.PowerLaw, {"C": 1.0, "m": 0.5}),
+    "PowerLaw": (contact.PowerLaw, {"C": 1e-9, "m": 0.5}),
     "PowerLaw.measured": (contact.PowerLaw.measured, {"C": 0.5, "m": 0.5, "origin": "x"}),
     "TabulatedLaw": (contact.TabulatedLaw, {"pressure": P, "k_n": P * 1e6, "area": P * 1e-9, "origin": "x"}),
     "TabulatedLaw.from_approach": (contact.TabulatedLaw.from_approach, {"pressure": P, "approach": P * 1e-13}),

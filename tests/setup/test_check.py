@@ -21,14 +21,17 @@ from faying.geometry.face_facts import read_facts
 from faying.geometry.geometry import mesh_step
 from faying.setup import new, template
 from faying.setup.check import check
+from faying.setup.edit import edited
 from faying.setup.expected import Expected, unknowns_of
 from faying.study import Study
 from faying.study.keys.geometry import mesh_of
 from tests.helpers import studies
+from tests.helpers.assemblies import bracket
 from tests.helpers.boxes import row
 from tests.helpers.laps import lapped
 from tests.helpers.meshfiles import STUDY, abaqus
 from tests.helpers.preloads import pulled
+from tests.helpers.proposed import proposed
 
 JOINED = 'faces = ["lower.joint", "upper.joint"]'
 
@@ -401,3 +404,39 @@ def test_a_meshed_bolt_whose_nut_is_in_no_joint_is_refused_as_by_the_run(tmp_pat
     assert fault.startswith("bolt 'M8': its face 'bolt.nut' is in no joint; add a [[joint]]")
     with pytest.raises(faying.InputError, match=re.escape(fault)):
         build(Study.read(tmp_path / "study.toml"))
+
+
+@pytest.mark.parametrize(
+    ("where", "value", "words"),
+    [
+        (("crown_across",), "3.05 mm", "crown_across = 3.05 mm on a face that is 30 mm long"),
+        (("twist",), "-3.05 mm", "twist = 3.05 mm on a face that is 30 mm long"),
+        (("wave",), "8.1 mm", "wave = 8.1 mm on a face that is 80 mm long"),
+        (("flatness",), "8.1 mm", "flatness = 8.1 mm on a face that is 80 mm long"),
+        (("waviness", "Wq"), "3.05 mm", "waviness = 3.05 mm on a face that is 30 mm long"),
+        (("along",), [0, 0, 1], "is at right angles to the faces"),
+    ],
+)
+def test_check_and_run_refuse_the_same_form_in_the_same_words(tmp_path, where, value, words):
+    """A tenth of a side of 80 x 30 mm: check knows the sides as the run does, with a mesh and without."""
+    file = tmp_path / "study.toml"
+    studies.write(file)
+    text = edited(edited(file.read_text(), ("joint", 0, "form", "flat"), None), ("joint", 0, "form", *where), value)
+    if where == ("wave",):
+        text = edited(text, ("joint", 0, "form", "wave_length"), "40 mm")
+    file.write_text(text)
+    for mesh in (True, False):
+        (fault,) = check(file, mesh=mesh).faults
+        assert words in fault.text
+    with pytest.raises(faying.InputError, match=re.escape(words)):
+        build(Study.read(file))
+
+
+def test_check_lays_bolts_on_the_mesh_as_a_run_does(tmp_path):
+    """A thread that engages 5 um of its hole meets no point of the mesh."""
+    file = proposed(bracket(tmp_path / "bracket.step"), "14 mm")
+    file.write_text(edited(file.read_text(), ("bolt", 1, "engaged"), "5 um"))
+    (fault,) = check(file).faults
+    assert (fault.key, fault.text[:40]) == ("bolt[2].faces", "the length of thread meets nothing of it")
+    with pytest.raises(faying.InputError, match="the length of thread meets nothing of its hole"):
+        _ = build(Study.read(file)).fitted_bolts

@@ -254,6 +254,18 @@ def test_faults_of_a_grid(plan):
         Grid(study=plan, surfaces=surfaces, axes=axes("surface.D=2.2:2.6:3", "surface.D=2.2:2.6:3"))
 
 
+def test_a_number_has_one_range_in_a_study_and_in_a_sweep(plan):
+    """A fit may find a G of less than any length has; a modulus beyond that of any solid is a wrong unit."""
+    given = {"D": 2.31, "G": "7.27e-15 m", "scan_area": "1 mm^2"}
+    assert plan.with_("surface", given).surface.G == pytest.approx(7.27e-15)
+    assert axis_of("surface.G=7.27e-15 m,1e-10 m").values[0] == pytest.approx(7.27e-15)
+    stiff = {"E": "1.1e14 Pa", "nu": 0.3, "density": "7800 kg/m^3"}
+    with pytest.raises(faying.InputError, match="beyond what a bolted structure has"):
+        plan.with_("material.mine", stiff)
+    with pytest.raises(faying.InputError, match="at most"):
+        axis_of("material.mine.E=200 GPa,1.1e14 Pa")
+
+
 def test_the_path_through_the_grid_meets_every_point_once_and_steps_to_neighbours(plan):
     grid = Grid(study=plan, surfaces=surfaces_of(plan), axes=axes("surface.D=2.2:2.6:3", "law.alpha=0.1:0.3:4"))
     path = grid.winding()

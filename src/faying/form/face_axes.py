@@ -8,9 +8,11 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
+from faying.geometry.face_triangles import FacePieces, FaceTriangles
 from faying.typing import Array
 
 Sides = tuple[float, float]
+Faces = Mesh | FaceTriangles  # of a mesh, or of a geometry before there is one
 SQUARE = 0.02  # relative difference of the sides below which neither is the longer one
 CURVED = 0.87  # cosine between a face's normal and its mean below which shapes in a plane say nothing of it
 
@@ -36,7 +38,11 @@ class FaceAxes:
 
     @classmethod
     def of(
-        cls, mesh: Mesh, faces: tuple[str, str], interface: Interface, along: tuple[float, float, float] | None = None
+        cls,
+        mesh: Faces,
+        faces: tuple[str, str],
+        interface: Interface | FacePieces,
+        along: tuple[float, float, float] | None = None,
     ) -> Self:
         """Find the rectangle that both faces have in common; along: the direction of x in place of the longer side.
 
@@ -105,7 +111,7 @@ class FaceAxes:
         return np.asarray((positions - self.origin) @ np.stack([x, np.cross(self.normal, x)]).T)
 
 
-def _box(mesh: Mesh, faces: tuple[str, str], normal: Array, x: Array) -> tuple[Array, Array, Array, Sides]:
+def _box(mesh: Faces, faces: tuple[str, str], normal: Array, x: Array) -> tuple[Array, Array, Array, Sides]:
     """Axes, middle and sides of the box that both faces share along x; x points where its largest component is > 0."""
     x = x * np.sign(x[np.argmax(np.abs(x) > np.abs(x).max() - 1e-9)])
     y = np.cross(normal, x)
@@ -115,7 +121,7 @@ def _box(mesh: Mesh, faces: tuple[str, str], normal: Array, x: Array) -> tuple[A
     return x, y, (low + high) / 2, (float(high[0] - low[0]), float(high[1] - low[1]))
 
 
-def _spacing(mesh: Mesh, face: str, axes: Array, middle: Array, sides: Sides) -> float:
+def _spacing(mesh: Faces, face: str, axes: Array, middle: Array, sides: Sides) -> float:
     """Distance [m] to the next node that three quarters of a face's nodes within the rectangle do not exceed."""
     from scipy.spatial import cKDTree
 

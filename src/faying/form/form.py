@@ -33,6 +33,8 @@ PARAMETERS = {
 }
 VARIED = PARAMETERS | OF_WAVINESS  # what sweeps and predictions know of a form
 TOLERANCE_SHARE = 2 / 3, 1 / 6  # mean and sd of the flatness drawn over the tolerance, a normal cut off at 2 sd
+SHAPES = ("crown_along", "crown_across", "twist", "wave", "flatness")
+ACROSS = ("crown_across", "twist", "waviness")  # what the shorter side of the face limits
 STEEPEST = 0.1  # of the side of the face, that a shape may have as height
 DEGREES = 2, 3, 4  # total degrees of the polynomials of a random form: crowns and twist, and two orders above
 GRID = 33  # points along each side of the rectangle at which the flatness of a random form is taken
@@ -98,8 +100,25 @@ class Form:
         return self if self.waviness is None else replace(self, waviness=replace(self.waviness, scan=scan))
 
     def laid(self, axes: FaceAxes) -> LaidWaves | None:
-        """Return the waves on a face with these axes, if there are any. Raises InputError where they do not fit."""
-        return None if self.waviness is None else LaidWaves.of(self.waviness, axes)
+        """Return the waves on a face with these axes, if there are any.
+
+        Raises InputError where the form does not fit the face: a shape without a longer side or on a curved face, one
+        that is too high for it, waves that have no room.
+        """
+        for name in SHAPES:
+            if getattr(self, name):
+                axes.check(name)
+        long, short = axes.lengths
+        waves = None if self.waviness is None else LaidWaves.of(self.waviness, axes)
+        heights = {name: abs(getattr(self, name)) for name in SHAPES} | {"waviness": waves.waves.Wq if waves else 0.0}
+        for name, height in heights.items():
+            side = short if name in ACROSS else long
+            if height > STEEPEST * side:
+                raise InputError(
+                    f"{name} = {1e3 * height:.4g} mm on a face that is {1e3 * side:.4g} mm long there; it is at most "
+                    f"{STEEPEST:.0%} of that: check its unit"
+                )
+        return waves
 
     def at(self, positions: Array, axes: FaceAxes, weights: Array | None = None) -> Array:
         """Gap [m] (q,) at positions (q, 3) [m] of a joint with these axes.
@@ -107,11 +126,8 @@ class Form:
         weights: area of each position (q,), which the mean plane of waves is fitted with; alike where None. Raises
         InputError where the form does not fit.
         """
+        waves = self.laid(axes)
         gap = np.zeros(len(positions))
-        for name in ("crown_along", "crown_across", "twist", "wave", "flatness"):
-            if getattr(self, name):
-                axes.check(name)
-        self.check_heights(*axes.lengths)
         place = 2 * axes.local(positions) / np.array(axes.lengths)
         x, y = place.T
         for c, s in ((self.crown_along, x), (self.crown_across, y)):
@@ -123,7 +139,6 @@ class Form:
         if self.flatness:
             for side in (0, 1):
                 gap += random_depth(place, self.flatness, self.seed, side)
-        waves = self.laid(axes)
         if waves is not None:
             gap += waves.gap(positions, axes, weights)
         if self.gap is not None:
@@ -132,17 +147,6 @@ class Form:
             if face is not None:
                 gap += face.placed(axes, outward).at(positions)
         return gap
-
-    def check_heights(self, long: float, short: float) -> None:
-        """Raise InputError where a shape is too high for a face of these sides [m], as with a wrong unit."""
-        sides = {"crown_along": long, "crown_across": short, "twist": short, "wave": long, "flatness": long}
-        for name, side in sides.items():
-            value = abs(getattr(self, name))
-            if value > STEEPEST * side:
-                raise InputError(
-                    f"{name} = {1e3 * value:.4g} mm on a face that is {1e3 * side:.4g} mm long there; it is at most "
-                    f"{STEEPEST:.0%} of that: check its unit"
-                )
 
     def on(self, interface: Interface, mesh: Mesh, faces: tuple[str, str]) -> Interface:
         """Return a joint of two named faces with this form added to the gap of its geometry."""

@@ -12,6 +12,20 @@ from faying.typing import Array, Index
 
 
 @dataclass(frozen=True, kw_only=True)
+class FacePieces:
+    """The triangles of one face: their middles (t, 3) [m], areas (t,) [m2] and normals out of the part (t, 3)."""
+
+    positions: Array
+    weights: Array
+    normals: Array
+
+    @property
+    def area(self) -> float:
+        """Area of the face [m2]."""
+        return float(self.weights.sum())
+
+
+@dataclass(frozen=True, kw_only=True)
 class FaceTriangles:
     """Named faces of parts, curved ones by chords; what a mesh says of its faces, it says too.
 
@@ -49,3 +63,16 @@ class FaceTriangles:
                 f"no face is called {name!r}; the faces are {', '.join(map(repr, sorted(self.triangles)))}"
             )
         return (self.triangles[name],)
+
+    def face_nodes(self, name: str) -> Index:
+        """Corners of a named face, as rows of `points`. Raises InputError as `face`."""
+        return np.unique(self.face(name)[0])
+
+    def pieces(self, name: str) -> FacePieces:
+        """The triangles of a named face. Raises InputError as `face`."""
+        a, b, c = np.moveaxis(self.points[self.face(name)[0]], 1, 0)
+        across = np.cross(b - a, c - a)
+        twice = np.linalg.norm(across, axis=1)
+        good = twice > 0
+        middles = (a + b + c)[good] / 3
+        return FacePieces(positions=middles, weights=twice[good] / 2, normals=across[good] / twice[good][:, None])

@@ -1,7 +1,7 @@
 """What can be said of a study in seconds, before anything is solved: faults, notes, what a run will need."""
 
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -10,7 +10,7 @@ from typing import Any, Literal, get_args
 from faying.bolt.bolt import Bolt, BoltPlace, each_in_its_place
 from faying.bolt.dowel import Dowel, DowelPlace
 from faying.bolt.solid_bolt import SolidBolt, SolidPlace
-from faying.case.case import SIZES, name_faults
+from faying.case.case import SIZES, interface_of, materials_of, name_faults, surfaces_of
 from faying.case.places import named_points, on_structure
 from faying.errors import FayingError, InputError
 from faying.fe.mesh import Mesh
@@ -34,6 +34,7 @@ from faying.setup.sketch import Sketch
 from faying.study.declaration.reader import StudyFaults
 from faying.study.keys.face import place_name
 from faying.study.keys.geometry import mesh_of
+from faying.study.keys.surface import Surface
 from faying.study.study import Study
 from faying.style import Summary
 from faying.text import cut
@@ -125,7 +126,7 @@ class _Findings:
         if found not in self.out:
             self.out.append(found)
 
-    def tried(self, code: str, key: str, work: Callable[[], None]) -> bool:
+    def tried(self, code: str, key: str, work: Callable[[], object]) -> bool:
         """Do some work; what it refuses is a fault. Returns whether it was done."""
         try:
             work()
@@ -186,9 +187,12 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
             found.add("fault", "contact", text, f"joint[{joint.number}].faces")
     sketch = _bolts(sketch, found, shared)
     _dowels(sketch, found)
-    for level, code, words, key in law_findings(sketch):
+    surfaces = _surfaces(study, found)
+    for level, code, words, key in law_findings(sketch, surfaces):
         found.add(level, code, words, key)
     made = _meshed(study, facts, named, found) if mesh and ready is None else ready
+    if made is not None:
+        _laid(study, made, surfaces, found)
     expected = _expected(study, facts, named, made, found)
     return Checked(findings=tuple(found.out), expected=expected)
 
@@ -294,6 +298,30 @@ def _meshed(
     made: list[Mesh] = []
     found.tried("mesh", "geometry.size", lambda: made.append(mesh_of(spec)))
     return made[0] if made else None
+
+
+def _surfaces(study: Study, found: _Findings) -> tuple[Surface, ...]:
+    """The surface of each joint; none where one of them cannot be read, which is a fault."""
+    key, out = "surface" if study.surface is not None else "joint[1].surface", list[Surface]()
+    found.tried("surface", key, lambda: out.extend(surfaces_of(study)))
+    for surface in dict.fromkeys(out):
+        for text in surface.warnings:
+            found.add("note", "surface", text, key)
+    return tuple(out)
+
+
+def _laid(study: Study, mesh: Mesh, surfaces: Sequence[Surface], found: _Findings) -> None:
+    """Joints with their form, bolts and dowels on the mesh, by what lays them there in a run."""
+    if any(one.level == "fault" for one in found.out):
+        return
+    materials = materials_of(study, mesh)
+    for joint, surface in zip(study.joints, surfaces, strict=True):
+        found.tried("contact", f"joint[{joint.number}].faces", partial(interface_of, study, mesh, joint, surface))
+    for k, bolt in enumerate(study.bolts, 1):
+        if isinstance(bolt, Bolt):
+            found.tried("bolt", f"bolt[{k}].faces", partial(bolt.fitted, mesh, materials))
+    for k, dowel in enumerate(study.dowels, 1):
+        found.tried("dowel", f"dowel[{k}].walls", partial(dowel.fitted, mesh))
 
 
 def _sizes(study: Study, named: Mapping[str, tuple[FaceFacts, ...]], found: _Findings) -> None:

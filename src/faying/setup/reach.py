@@ -9,12 +9,12 @@ import numpy as np
 from faying.bolt.bolt import BoltPlace
 from faying.bolt.solid_bolt import SolidPlace
 from faying.bolt.vdi2230 import cone_pressure
-from faying.case.case import surfaces_of
 from faying.contact.build import AUTO
 from faying.contact.law import ContactLaw
 from faying.contact.mates import line_of
 from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError, InputError
+from faying.form.face_axes import FaceAxes
 from faying.geometry.seen_along import across, hits
 from faying.joint.joint_law import JointLaw
 from faying.joint.load_path import BoltLine, seat_ring
@@ -29,18 +29,11 @@ from faying.units import show, show_area
 Line = tuple[Literal["ok", "note", "fault"], str, str, str]
 
 
-def law_findings(sketch: Sketch) -> Iterator[Line]:
-    """Level, code, text and key of what there is to say of the surface and the law of each joint."""
+def law_findings(sketch: Sketch, surfaces: Sequence[Surface]) -> Iterator[Line]:
+    """Level, code, text and key of what there is to say of the law of each joint; nothing without surfaces."""
     study = sketch.study
-    key = "surface" if study.surface is not None else "joint[1].surface"
-    try:
-        surfaces = surfaces_of(study)
-    except FayingError as fault:
-        yield "fault", "surface", str(fault), key
+    if not surfaces:
         return
-    for surface in dict.fromkeys(surfaces):
-        for text in surface.warnings:
-            yield "note", "surface", text, key
     through = {joint.name: _through(sketch, joint) for joint in study.joints}
     areas = {joint.name: sum(c.area for c in sketch.contacts(joint.faces)) for joint in study.joints}
     pairs = {joint.name: joint.faces for joint in study.joints}
@@ -58,17 +51,17 @@ def law_findings(sketch: Sketch) -> Iterator[Line]:
             pair = study.law_of(joint).pair(rough, other)
             yield "ok", "mates", f"joint {joint.name!r}: {line_of(surface.faces, pair)}", at
         yield from _beside(sketch, shares[joint.name], joint, reach, name, law)
-        yield from _form(sketch, joint.number, joint)
+        yield from _form(sketch, joint.number, joint, surface)
 
 
-def _form(sketch: Sketch, k: int, joint: JointChoice) -> Iterator[Line]:
-    """A form that is too high for any rectangle on the face, which a run refuses with the face's own sides."""
+def _form(sketch: Sketch, k: int, joint: JointChoice, surface: Surface) -> Iterator[Line]:
+    """A form that does not fit the face, which a run refuses in the same words."""
     if joint.form is None:
         return
-    corners = sketch.mesh.points[np.unique(sketch.mesh.triangles[joint.faces[0]])]
-    longest = float(np.linalg.norm(np.ptp(corners, axis=0)))
     try:
-        joint.form.check_heights(longest, longest)
+        pieces = sketch.mesh.pieces(joint.faces[0])
+        axes = FaceAxes.of(sketch.mesh, joint.faces, pieces, joint.form.along)
+        joint.form.with_scan(surface.waves).laid(axes)
     except InputError as fault:
         yield "fault", "form", f"joint {joint.name!r}: {fault}", f"joint[{k}].form"
 

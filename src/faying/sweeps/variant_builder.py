@@ -17,7 +17,6 @@ from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.reduction.part_shares import Scales
 from faying.reduction.reduced import ReducedModel
-from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
@@ -128,21 +127,11 @@ class Lately(Generic[Known, Made]):
         return self._made[-1][1]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class MadeLaw:
-    """A contact law, and the laws of joints that have been laid with it, each with its tables."""
+    """A contact law that was made once, and equals no other one."""
 
     chosen: Choice
-    laid: Lately[JointLaw, JointLaw] = field(default_factory=Lately)
-
-    def on(self, joint: JointChoice, nu: float) -> JointLaw:
-        """The law on a joint. It is asked hundreds of times, so that its table pays however few points there are."""
-
-        def tabulated(law: JointLaw) -> JointLaw:
-            asked = replace(law, few=0)
-            return self.laid.get(asked, lambda: asked)
-
-        return joint.laid(self.chosen, nu, tabulated)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,13 +141,14 @@ class VariantBuilder:
     design: Design
     pairs: tuple[tuple[Material, Material], ...]
     places: tuple["JointPlacement", ...] = ()  # of each joint, where its form varies; empty where none does
-    # along an axis of preload the laws stay the same
-    _lately: Lately[tuple[int, LawChoice, Surface], MadeLaw] = field(default_factory=Lately, repr=False, compare=False)
+    # contact laws, and the laws of joints with their tables: along an axis of preload they stay the same
+    _made: Lately[tuple[int, LawChoice, Surface], MadeLaw] = field(default_factory=Lately, repr=False, compare=False)
+    _laid: Lately[tuple[MadeLaw, JointLaw], JointLaw] = field(default_factory=Lately, repr=False, compare=False)
     # the last point asked for, with the design that it is of
     _points: dict[int, tuple[Design, StudyVariant]] = field(default_factory=dict, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"design": self.design, "pairs": self.pairs, "places": self.places, "_lately": Lately(), "_points": {}}
+        return {**vars(self), "_made": Lately(), "_laid": Lately(), "_points": {}}
 
     def _point(self, index: int) -> StudyVariant:
         """The study at one point: asked for three times in turn, made once."""
@@ -187,8 +177,14 @@ class VariantBuilder:
         """Law of one joint at one point."""
         joint, surface, (rough, other) = point.study.joints[number], point.surfaces[number], self.pairs[number]
         law = point.study.law_of(joint)
-        made = self._lately.get((number, law, surface), lambda: MadeLaw(chosen=law.make(surface, rough, other)))
-        return made.on(joint, rough.nu)
+        made = self._made.get((number, law, surface), lambda: MadeLaw(law.make(surface, rough, other)))
+
+        def tabulated(law: JointLaw) -> JointLaw:
+            # asked hundreds of times, so that its table pays however few points the joint has
+            asked = replace(law, few=0)
+            return self._laid.get((made, asked), lambda: asked)
+
+        return joint.laid(made.chosen, rough.nu, tabulated)
 
     def model_at(self, model: ReducedModel, index: int) -> ReducedModel:
         """A model of the structure with the gaps and the scales of one point."""

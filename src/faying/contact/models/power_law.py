@@ -1,6 +1,7 @@
 """The approach law of machine-tool joints: approach = C p^m, fitted to measured joints since Ostrovskii."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar, Self, final
 
 import numpy as np
@@ -10,6 +11,14 @@ from faying.checks import number
 from faying.contact.law import ContactLaw, Response, checked
 from faying.contact.measured_range import OF_CURVES
 from faying.contact.parameter import TEXT, Parameter
+from faying.errors import InputError
+from faying.units import show
+
+PRESSURES = 1e3, 1e12  # Pa: the weight of a plate, and more than any solid has as modulus
+# at the greatest pressure: no joint has an approach [m] of less than the distance of atoms or of more than any
+# roughness, nor a stiffness [Pa/m] of more than the stiffest solid, 1 TPa, has over the distance of atoms
+APPROACHES = 1e-10, 1e-3
+STIFFEST = 1e12 / 1e-10
 
 
 @final
@@ -34,9 +43,20 @@ class PowerLaw(ContactLaw):
     parameters: ClassVar = {
         "C": Parameter("", "approach at 1 Pa, in m/Pa^m", 0),
         "m": Parameter("", "power of pressure", 0, 1),
-        "greatest": Parameter("Pa", "largest pressure of the measurement", 0),
+        "greatest": Parameter("Pa", "largest pressure of the measurement", *PRESSURES, "[]"),
         "origin": Parameter(TEXT, "which joint it is"),
     }
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        top, (least, greatest) = self.closure_range[1], APPROACHES
+        stiffness = self.greatest / (self.m * top) if top else inf
+        if not (least <= top <= greatest and stiffness <= STIFFEST):
+            raise InputError(
+                f"{self.name}: C = {self.C:g} m/Pa^m and m = {self.m:g} give an approach of {top:.3g} m and a "
+                f"stiffness of {stiffness:.3g} Pa/m at {show(self.greatest, 'Pa')}; a joint has {show(least, 'm')} to "
+                f"{show(greatest, 'm')} and at most {STIFFEST:g} Pa/m: check the units"
+            )
 
     @classmethod
     def measured(cls, *, C: float, m: float, origin: str, greatest: float = 9.8e6) -> Self:

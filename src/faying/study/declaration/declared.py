@@ -96,7 +96,8 @@ class Key:
 
     @classmethod
     def quantity(cls, unit: str, says: str, default: Any = None, *, positive: bool = True) -> "Key":
-        """A number with its unit."""
+        """A number with its unit, in the range that numbers of this unit have."""
+        ends = values.RANGES.get(unit) if positive else None
         return cls(
             f"quantity [{unit}]",
             QUANTITY,
@@ -105,7 +106,7 @@ class Key:
             read=lambda value, name: values.quantity(value, unit, name, positive=positive),
             unit=unit,
             allowed="positive" if positive and default != 0 else "",
-            parameter=Parameter(unit, says, 0 if positive else -inf),
+            parameter=Parameter(unit, says, *ends, "[]") if ends else Parameter(unit, says, 0 if positive else -inf),
         )
 
     @classmethod
