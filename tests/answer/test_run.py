@@ -197,13 +197,13 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
 
 
 def test_preloads_found_together_are_those_found_one_by_one(study, monkeypatch):
-    from faying.case.preloads import solved_preload
     from faying.joint import shared_modes as module
     from faying.joint.shared_modes import Preloads
+    from faying.joint.support_check import checked_preload
 
     case = Case.of(study)
     problem = case.structure.assembly()
-    wanted = [solved_preload(case, k, problem) for k in range(2)]
+    wanted = [checked_preload(case.structure, problem, case.study.preloads[k]) for k in range(2)]
     together = Preloads(case.modal, case.study.preloads)
     monkeypatch.setattr(module, "AT_ONCE", case.structure.mesh.unknowns)  # room for one of them
     apart = Preloads(case.modal, case.study.preloads)
