@@ -11,8 +11,8 @@ import pytest
 
 import faying
 from faying.answer.run import run
-from faying.case.engine import RANGE_ERROR
 from faying.errors import InputError
+from faying.joint.shared_modes import RANGE_ERROR
 from faying.numerics.solve import available
 from faying.study import Study
 from tests.helpers import studies

@@ -28,18 +28,13 @@ class Dense(Equilibrium):
         start[::3] = -1e-6
         return start
 
-    def _direction(self, u, force, slip_states, accuracy):
+    def _direction(self, wanted):
         matrix = np.array(self.stiffness)
-        for trace, k_n, k_t in self._tangents(u, slip_states):
+        for trace, k_n, k_t in self._tangents(wanted.u, wanted.slip_states):
             for i in range(len(trace.weights)):
                 matrix[3 * i, 3 * i] += k_n[i]
                 matrix[3 * i + 1 : 3 * i + 3, 3 * i + 1 : 3 * i + 3] += k_t[i]
-        self.tangent = matrix
-        step = yield force
-        return step, 1
-
-    def _near(self, forces):
-        return np.linalg.solve(self.tangent, forces)
+        return np.linalg.solve(matrix, wanted.force), 1
 
 
 def law(**changes):

@@ -55,6 +55,16 @@ def test_a_state_is_what_a_study_computes(study, state):
     assert shapes == pytest.approx(result.shapes[0], abs=1e-6 * np.abs(shapes).max())
 
 
+def test_both_engines_give_one_state(made, state):
+    direct = made.solve("6 kN", modes=6, engine="direct")
+    assert direct.modes.frequencies == pytest.approx(state.modes.frequencies, rel=1e-8)
+    assert direct.modes.damping == pytest.approx(state.modes.damping, rel=1e-6)
+    (name,) = state.pressures
+    assert direct.pressures[name] == pytest.approx(state.pressures[name], abs=1e-7 * state.pressures[name].max())
+    with pytest.raises(faying.InputError, match="engine = 'fast'"):
+        made.solve("6 kN", engine="fast")
+
+
 def test_a_state_says_what_its_law_assumes_and_where_it_ends(study, state):
     """The notes of a study on its law are those of the state, so that none of them is lost in Python."""
     wanted = {(note.code, note.text.partition(",")[0]) for note in faying.run(study).notes}

@@ -12,14 +12,13 @@ from faying.backbones.result import BackboneCurve, collected
 from faying.backbones.store import CurveStore
 from faying.case.alternative import changed, study_with
 from faying.case.case import Case, checked_laws, law_reasons, read_for, surfaces_of
-from faying.case.preloads import solved_preload
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.joint.attachments import nearest_node
 from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.springs import Springs
-from faying.joint.support_check import check_motions
+from faying.joint.support_check import check_motions, checked_preload
 from faying.measured.mac import mac
 from faying.microslip.epmc import EpmcCurve, EpmcPoint
 from faying.microslip.levels import cut_laws
@@ -315,7 +314,7 @@ def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress:
         if case is not before:
             problem, before = structure.assembly(solver=study.modes.solver), case
         progress.stage(f"preload {study.preloads[index].name}", 0.2)
-        preload = solved_preload(case, index, problem)
+        preload = checked_preload(structure, problem, study.preloads[index])
         springs = structure.springs(preload.pressures)
         for joint, own in zip(structure.joints, springs, strict=True):
             if not np.any(own.k_t > 0):

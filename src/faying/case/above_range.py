@@ -11,7 +11,8 @@ from faying.contact.mates import Mates
 from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError
 from faying.fe.interface import Interface
-from faying.joint.shared_modes import EXACT, coupled, modes_with
+from faying.joint.modal import EXACT
+from faying.joint.shared_modes import coupled, modes_with
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.notes import Note, percent

@@ -43,7 +43,7 @@ def solve_alternative(case: Case, choice: AlternativeChoice, engine: Engine, pro
     done = progress.done
     try:
         other = changed(case, choice)
-        solver, loads = engine.of(other), range(len(case.study.loads))
+        solver, loads = engine.of(other.modal, other.study.preloads), range(len(case.study.loads))
         states = tuple(_slim(solve(other, k, solver, progress, ranges=False)) for k in loads)
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)

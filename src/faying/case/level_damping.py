@@ -8,7 +8,7 @@ import numpy as np
 from faying.case.case import Case
 from faying.errors import InputError
 from faying.joint.equilibrium import PreloadState
-from faying.joint.state import Vibration
+from faying.joint.modal import Vibration
 from faying.microslip.level_basis import level_basis
 from faying.microslip.levels import SPRINGS, AtLevels, cut_laws, level_model
 from faying.microslip.microslip import Microslip

@@ -9,7 +9,6 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.case.case import Case, Progress
-from faying.case.preloads import solved_preload
 from faying.decks.deck import CondensedDeck
 from faying.decks.system import UnitSystem
 from faying.decks.write import write_condensed
@@ -17,7 +16,7 @@ from faying.errors import InputError
 from faying.export.condensed import CondensedJoint, condensed_modes
 from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
-from faying.joint.support_check import check_motions
+from faying.joint.support_check import check_motions, checked_preload
 from faying.measured.mac import mac, partners
 from faying.misuse import checked_call
 from faying.progress import Report
@@ -205,7 +204,7 @@ def condense(
     problem = structure.assembly(solver=study.modes.solver)
     for k in range(index + 1):
         progress.begin(f"preload {study.preloads[k].name}")
-        state = solved_preload(case, k, problem)
+        state = checked_preload(case.structure, problem, case.study.preloads[k])
     springs = structure.springs(state.pressures)
     progress.begin("modes")
     modes, *_ = modes_of(case.modal, springs)

@@ -10,8 +10,10 @@ from faying.memory import require
 from faying.numerics.damped import DampedModes
 from faying.numerics.modes import Modes
 from faying.numerics.solve import conjugate_gradients
+from faying.numerics.span import extension
 from faying.typing import Array, Complex
 
+MIN_NEW_SHARE = 1e-10  # of the square of a vector of the basis that must be new
 STATIC = 1e-8  # accuracy of the response at the shift
 
 
@@ -87,13 +89,15 @@ def frequency_response(
     )
     mass = vibration.mass
     # without what the known modes answer, which is all but the last digits of it where a body is free
-    rest = forces - (mass @ modes.shapes) @ (modes.shapes.T @ forces)
+    momentum = mass @ modes.shapes
+    rest = forces - momentum @ (modes.shapes.T @ forces)
     static = conjugate_gradients(
         lambda x: vibration.stiffness @ x + modes.shift * (mass @ x), modes.factorisation, rest, accuracy=STATIC
     )
-    columns = np.concatenate([modes.shapes, damped.shapes.real, damped.shapes.imag, static], axis=1)
-    basis = _orthonormal(columns, mass, leading=modes.shapes.shape[1])
-    small, basis = _projected(vibration, basis)
+    columns = np.concatenate([damped.shapes.real, damped.shapes.imag, static], axis=1)
+    columns /= np.sqrt(np.maximum(np.einsum("ij,ij->j", columns, mass @ columns), 1e-300))  # no motion stays none
+    added, _ = extension(columns, modes.shapes, momentum, mass, least=MIN_NEW_SHARE)
+    small, basis = _projected(vibration, np.concatenate([modes.shapes, added], axis=1))
     push, read = basis.T @ forces, basis.T @ outputs
     inner = np.empty((len(frequencies), basis.shape[1], push.shape[1]), dtype=complex)
     for i, omega in enumerate(2 * np.pi * frequencies):
@@ -131,15 +135,3 @@ def _error(vibration: ForcedVibration, modes: Modes, forces: Array, u: Complex, 
     )
     energy = abs(np.vdot(u, products[0])) + modes.shift * abs(np.vdot(u, products[3]))
     return float(np.sqrt(left / energy))
-
-
-def _orthonormal(columns: Array, mass: Any, leading: int) -> Array:
-    """The leading columns as they are (orthonormal with the mass), and what the others add to them."""
-    basis = columns[:, :leading]
-    rest = columns[:, leading:]
-    rest = rest / np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, mass @ rest), 1e-300))
-    for _ in range(2):
-        rest = rest - basis @ (basis.T @ (mass @ rest))
-    values, rotation = np.linalg.eigh(rest.T @ (mass @ rest))
-    keep = values > 1e-10
-    return np.concatenate([basis, rest @ (rotation[:, keep] / np.sqrt(values[keep]))], axis=1)

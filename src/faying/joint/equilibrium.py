@@ -10,7 +10,7 @@ matrices (`preload`) or in a small basis (`reduce`).
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,8 +20,7 @@ from faying.joint.springs import InterfaceMotion
 from faying.numerics.product import product_of_sizes
 from faying.typing import Array, Index, Mask
 
-Found = TypeVar("Found")
-Steps = Generator[Array, Array, Found]  # yields forces (unknowns,), and is sent displacements near their answer
+Step = tuple[Array, int]  # of Newton's iteration, and how many inner steps it took
 
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
 FORCING_TERM = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
@@ -115,24 +114,8 @@ class Equilibrium(ABC):
         """Return a displacement to start from."""
 
     @abstractmethod
-    def _direction(
-        self, u: Array, force: Array, slip_states: list[StickSlip], accuracy: float
-    ) -> Steps[tuple[Array, int]]:
-        """Return the Newton step for an out-of-balance force and how many inner steps it took."""
-
-    @abstractmethod
-    def _near(self, forces: Array) -> Array:
-        """Displacements near the answer to forces (unknowns,) or (unknowns, m), for which the steps of a load ask."""
-
-    def _run_steps(self, steps: Steps[Found]) -> Found:
-        """What steps return that nobody else goes with."""
-        try:
-            force = next(steps)
-            while True:
-                force = steps.send(self._near(force))
-        except StopIteration as end:
-            found: Found = end.value
-            return found
+    def _direction(self, wanted: "StepWanted") -> Step:
+        """Return the Newton step for an out-of-balance force."""
 
     def _check_load(self, load: Array) -> None:
         """Raise InputError where no equilibrium exists under this load; by default any load will do."""
@@ -167,7 +150,13 @@ class Equilibrium(ABC):
         if start is None:
             start = self._extrapolated(load) if self._past else self._start(load)
         newton = Newton(self, load, tolerance, report)
-        u, slip_states = self._run_steps(newton.run(start, steps))
+        run = newton.run(start, steps)
+        try:
+            wanted = next(run)
+            while True:
+                wanted = run.send(self._direction(wanted))
+        except StopIteration as end:
+            u, slip_states = end.value
         self._remember(load, u, alone=shanks is None)
         return self._preload_state(newton, u, slip_states)
 
@@ -375,6 +364,15 @@ def check_balance(load: Array, rigid: Array) -> None:
         )
 
 
+class StepWanted(NamedTuple):
+    """A Newton step at a displacement, for an out-of-balance force, to an accuracy relative to that [-]."""
+
+    u: Array
+    force: Array
+    slip_states: list[StickSlip]
+    accuracy: float
+
+
 @dataclass
 class Newton:
     """Newton's iteration for one load: how far it has come, and what it has cost."""
@@ -387,8 +385,11 @@ class Newton:
     steps: int = 0
     inner: int = 0
 
-    def run(self, u: Array, most: int) -> Steps[tuple[Array, list[StickSlip]]]:
-        """Return the displacement and the tangential state in equilibrium. Raises NotConverged after `most` steps."""
+    def run(self, u: Array, most: int) -> Generator[StepWanted, Step, tuple[Array, list[StickSlip]]]:
+        """Return the displacement and the tangential state in equilibrium; yield the steps that are wanted on the way.
+
+        Raises NotConverged after `most` steps.
+        """
         balance, load = self.balance, self.load
         scale = float(np.linalg.norm(load))
         least, tolerance, rounding = np.inf, self.tolerance, None
@@ -416,7 +417,7 @@ class Newton:
                 )
             # as exact as Newton's own convergence asks, and no more than the tolerance does
             accuracy = max(min(FORCING_TERM, 0.1 * self.size), 0.3 * tolerance / self.size)
-            step, count = yield from balance._direction(u, force, slip_states, accuracy=accuracy)
+            step, count = yield StepWanted(u, force, slip_states, accuracy)
             u = balance._line_search(u, step, load, slip_states)
             # far off, k_t follows at once; near the end it is kept so that Newton converges
             if self.size > FIX_FRICTION_BELOW:

@@ -24,8 +24,9 @@ class JointLaw:
     """The law of one joint, with its pressure as a function of approach: w = integral of dp/k from 0 to p.
 
     k is the law's k_load where it has one (asperities that yield close more on loading than they spring back), else
-    k_n. Below the least pressure k goes on as a power of p, of at most 2/3, so that the faces do meet: a law that grows
-    in proportion to pressure from nothing has its first touch infinitely far away, which no finite face has.
+    k_n. Below the least pressure k, k_n and k_t fall to 0 as a power of p, from 1/3 (one Hertzian spot) to 2/3, so that
+    the faces do meet: a law that grows in proportion to pressure from nothing has its first touch infinitely far away,
+    which no finite face has.
 
     Args:
         model: the contact law.

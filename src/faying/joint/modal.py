@@ -1,13 +1,22 @@
-"""What is asked about the vibration of a structure: how many modes, which loss, by which factorisation."""
+"""What is asked about the vibration of a structure, who answers it, and the answer."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal, Protocol
 
+from faying.fe.interface import Interface
 from faying.joint.bolted import BoltedStructure
+from faying.joint.equilibrium import PreloadState
+from faying.joint.preload_case import PreloadCase
+from faying.joint.springs import Springs
+from faying.numerics.damped import DampedModes
+from faying.numerics.modes import Modes
 from faying.numerics.solve import BY_PARTS, MPI
+from faying.typing import Array
 
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
 MAX_MODES = 10_000
+EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape
 SOLVERS = ("pardiso", BY_PARTS, "mumps", "cholmod", "superlu", MPI)
 
 
@@ -48,3 +57,29 @@ class ModalProblem:
     def mode_count(self) -> int:
         """Real modes that are computed, rigid and spare ones included."""
         return self.rigid_count + self.choice.count + SPARE_MODES
+
+
+@dataclass(frozen=True, kw_only=True)
+class Vibration:
+    """Real and complex modes under the springs of the joints, with stiffness and loss [N/m] that they belong to."""
+
+    modes: Modes
+    damped: DampedModes
+    stiffness: Any
+    loss: Any
+
+
+class Engine(Protocol):
+    """How the equations of a structure are solved at its preloads; no printed digit depends on it."""
+
+    def preload(self, number: int) -> PreloadState:
+        """The equilibrium at one of the preloads, counted from 0; raises as `checked_preload` does."""
+
+    def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
+        """Real and complex modes with springs on the joints. Raises InputError where a part moves freely."""
+
+    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
+        """Frequencies [Hz] of the elastic modes with other springs, their squares to 1e-4 or nearer."""
+
+    def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Engine":
+        """The same for the structure under another law or form, on the same mesh."""

@@ -6,8 +6,8 @@ solutions (multigrid over MPI), each Newton step takes its own. Loads under whic
 their iterations ask of the factorisation at the same time, it answers at once.
 """
 
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Generator, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -19,8 +19,8 @@ from faying.joint.equilibrium import (
     Equilibrium,
     Newton,
     PreloadState,
-    Steps,
-    StickSlip,
+    Step,
+    StepWanted,
     admissible,
     check_balance,
 )
@@ -30,6 +30,9 @@ from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
 from faying.numerics.solve import Factorisation, Factoriser
 from faying.typing import Array, Index
+
+Found = TypeVar("Found")
+Steps = Generator[Array, Array, Found]  # yields forces (unknowns,), and is sent displacements near their answer
 
 AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper: one step costs a fiftieth of it
 CHEAP = 3  # the same where a factorisation costs no more than a few solutions
@@ -155,8 +158,14 @@ class PreloadProblem(Equilibrium):
         """From a guess of the joints to equilibrium under a load, with the factorisation as it is."""
         start = yield from self._initial_guess(load, guess)
         newton = Newton(self, load, tolerance, None)
-        u, slip_states = yield from newton.run(start, MAX_NEWTON_STEPS)
-        return self._preload_state(newton, u, slip_states)
+        run = newton.run(start, MAX_NEWTON_STEPS)
+        wanted = next(run)
+        while True:
+            step = yield from self._direction_steps(wanted)
+            try:
+                wanted = run.send(step)
+            except StopIteration as end:
+                return self._preload_state(newton, *end.value)
 
     def _start(self, load: Array) -> Array:
         [guess] = self._guesses([load])
@@ -245,10 +254,21 @@ class PreloadProblem(Equilibrium):
         assert self.factor is not None
         return self.factor.solve(forces)
 
-    def _direction(
-        self, u: Array, force: Array, slip_states: list[StickSlip], accuracy: float
-    ) -> Steps[tuple[Array, int]]:
-        tangents = self._tangents(u, slip_states)
+    def _direction(self, wanted: StepWanted) -> Step:
+        return self._run_steps(self._direction_steps(wanted))
+
+    def _run_steps(self, steps: Steps[Found]) -> Found:
+        """What steps return that nobody else goes with."""
+        try:
+            force = next(steps)
+            while True:
+                force = steps.send(self._near(force))
+        except StopIteration as end:
+            found: Found = end.value
+            return found
+
+    def _direction_steps(self, wanted: StepWanted) -> Steps[Step]:
+        force, accuracy, tangents = wanted.force, wanted.accuracy, self._tangents(wanted.u, wanted.slip_states)
 
         def product(x: Array) -> Array:
             y = self.stiffness @ x
@@ -297,7 +317,7 @@ class PreloadProblem(Equilibrium):
 
     def _gradients(
         self, product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = AGED
-    ) -> Steps[tuple[Array, int]]:
+    ) -> Steps[Step]:
         """Conjugate gradients: the solution and how many steps it took, `limit` where that was not enough."""
         x = np.zeros_like(right)
         r = right.copy()

@@ -8,7 +8,11 @@ import numpy as np
 
 from faying.typing import Array, Index
 
-GREATEST_FADE = 2 / 3  # power of k in p below the least pressure
+# powers of k in p below the least pressure: the greatest, with which k falls as the square of the approach and faces
+# still meet (in proportion to p they never would); and that of one Hertzian spot, p as approach^(3/2)
+GREATEST_FADE, HERTZ = 2 / 3, 1 / 3
+ROUNDED = 1e-3  # of a power over a decade
+DECADE = 10.0
 BINS = 100_000  # most places of an index into a table
 
 
@@ -16,8 +20,8 @@ BINS = 100_000  # most places of an index into a table
 class PressureCurve:
     """p(w) with w the integral of dp/k from 0 to p, as a cubic of ln p over ln w with the slopes that k gives.
 
-    Below the first pressure k goes on as a power of p, of at most 2/3, so that w is finite; beyond the last, p goes on
-    as a power of w.
+    Below the first pressure k goes on as a power of p (`fade`), so that it falls to 0 with p and w is finite; beyond
+    the last, p goes on as a power of w.
 
     Args:
         log_w, log_p: ln of approach [m] and of pressure [Pa], rising.
@@ -109,8 +113,15 @@ class PressureCurve:
 
 
 def fade(p: Array, k: Array) -> float:
-    """Power of the pressure with which k goes on below the first of the pressures p [-]."""
-    return min(float(np.log(k[1] / k[0]) / np.log(p[1] / p[0])), GREATEST_FADE)
+    """Power of the pressure with which k goes on below the first of the pressures p [-].
+
+    It is that of the law itself over its first decade. A law whose stiffness falls slower than that of one Hertzian
+    spot does not resolve the last touch: its first points scatter, and k could rise while they open. Its k falls with
+    `GREATEST_FADE`, smoothly in the approach.
+    """
+    first = min(int(np.searchsorted(p, DECADE * p[0])), len(p) - 1)
+    power = float(np.log(k[first] / k[0]) / np.log(p[first] / p[0]))
+    return min(power, GREATEST_FADE) if power >= HERTZ - ROUNDED else GREATEST_FADE
 
 
 def equal_steps(grid: Array) -> tuple[Index, float]:

@@ -1,16 +1,21 @@
-"""Real modes of a structure under one set of springs after another, by one factorisation where that will do."""
+"""Preloads and modes of a structure in one state after another, by one factorisation where that will do."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, final
 
 from faying.errors import NotConverged
 from faying.fe.interface import Interface
 from faying.joint.assembled_parts import added
-from faying.joint.modal import SPARE_MODES, ModalProblem
+from faying.joint.equilibrium import PreloadState
+from faying.joint.modal import EXACT, SPARE_MODES, ModalProblem, Vibration
 from faying.joint.preload import PreloadProblem
+from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs
+from faying.joint.support_check import check_contact, check_motions, checked_preload
+from faying.joint.tighten import tighten_together
 from faying.numerics.changed import UpdatedStiffness, assembled
 from faying.numerics.constraint import constrain
+from faying.numerics.damped import damped_near
 from faying.numerics.memory import check_modes
 from faying.numerics.modal_reanalysis import ModalReanalysis, near_factor, refined_modes
 from faying.numerics.modes import Modes, lowest_modes
@@ -19,7 +24,8 @@ from faying.numerics.single import factorise_roughly
 from faying.numerics.solve import Factoriser
 from faying.typing import Array
 
-EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape
+RANGE_ERROR = 1e-4  # of the squared frequencies at the ends of a range, which no digit of a law's range asks for
+AT_ONCE = 8_000_000  # unknowns of all preloads that are found at once
 MAX_ROUNDS = 6  # rounds of enrichment that cost about what a factorisation and the two rounds after it do
 BASIS_STATES, ROOM = 8, 24_000_000  # what the basis keeps: times the modes of one state, or numbers, whichever is more
 
@@ -153,3 +159,92 @@ def modes_with(
     if rigid is None:
         return lowest_modes(stiffness, mass, count, shift_frequency=frequency, solver=problem.choice.solver)
     return refined_modes(stiffness, mass, count, rigid=rigid, shift_frequency=frequency, solver=solver, spare=spare)
+
+
+class Preloads:
+    """The equilibria of a structure at its preloads: at all of them at once, where they can go together.
+
+    problem: that of the structure, or a like one with a factorisation; made here where None.
+    """
+
+    def __init__(
+        self, modal: ModalProblem, preloads: Sequence[PreloadCase], problem: PreloadProblem | None = None
+    ) -> None:
+        self.structure, self.preloads = modal.structure, preloads
+        self.problem = problem or modal.structure.assembly(solver=modal.choice.solver)
+        self._found: list[PreloadState | None] | None = None
+
+    def at(self, number: int) -> PreloadState:
+        """The equilibrium at one of the preloads, counted from 0. Raises what `checked_preload` raises."""
+        if self._found is None:
+            self._found = self._together()
+        found = self._found[number]
+        if found is None:
+            return checked_preload(self.structure, self.problem, self.preloads[number])
+        check_contact(self.structure, found.pressures, found.openings)
+        return found
+
+    def _together(self) -> list[PreloadState | None]:
+        """The states at all preloads; None for those that are to be found one by one, each from the one before."""
+        count = len(self.preloads)
+        fits = 1 < count <= AT_ONCE // self.structure.mesh.unknowns
+        in_order = any(one.order is not None for one in self.preloads)
+        if not fits or in_order or not self.problem.can_go_together:
+            return [None] * count
+        return tighten_together(self.structure, self.problem, [one.forces for one in self.preloads])
+
+
+@final
+class Reanalysis:
+    """An `Engine` with one factorisation and one basis for many states.
+
+    All preloads are found together, or each from those before; modes grow from one basis, and start from the
+    factorisation of the preload. `Direct` has the same answer.
+    """
+
+    def __init__(
+        self,
+        modal: ModalProblem,
+        preloads: Sequence[PreloadCase],
+        *,
+        shared: SharedModes | None = None,
+        problem: PreloadProblem | None = None,
+    ) -> None:
+        self.modal = modal
+        self._preloads = Preloads(modal, preloads, problem)
+        self._shared = SharedModes() if shared is None else shared
+        self._looked = False  # for modes that only the ends of a range bring among the lowest
+
+    def preload(self, number: int) -> PreloadState:
+        """See `Engine`."""
+        return self._preloads.at(number)
+
+    def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
+        """See `Engine`; preload and modes lend each other their factorisations."""
+        shared, preload, modal = self._shared, self._preloads.problem, self.modal
+        structure, choice = modal.structure, modal.choice
+        shared.begin(modal, preload)
+        modes, stiffness = shared.of(modal, springs)
+        loss = structure.joint_loss(springs, viscous=choice.damping == "viscous")
+        check_motions(structure, modes)
+        preload.adopt_factor(modes.factorisation, modal.shift_frequency)
+        assert shared.near is not None
+        damped = damped_near(
+            shared.near, modes, stiffness, loss, count=choice.count, kind=choice.damping, tolerance=EXACT
+        )
+        return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
+
+    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
+        """See `Engine`."""
+        if not self._looked and self._shared.near is not None:
+            self._shared.near.look_everywhere()
+            self._looked = True
+        modes, _ = self._shared.of(self.modal, springs, tolerance=RANGE_ERROR, shapes=False)
+        return modes.frequencies[self.modal.rigid_count :][: self.modal.choice.count]
+
+    def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Reanalysis":
+        """See `Engine`; the factorisation at hand serves the other structure, too."""
+        assembly = problem.structure.assembly(solver=problem.choice.solver)
+        if self._shared.near is not None:
+            assembly.adopt_factor(self._shared.near.modes.factorisation, problem.shift_frequency)
+        return Reanalysis(problem, preloads, shared=self._shared, problem=assembly)

@@ -1,28 +1,26 @@
 """A bolted structure under one preload: pressures, springs of the joints, modes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.joint.bolted import BoltedStructure
+from faying.joint.direct import Direct
 from faying.joint.equilibrium import PreloadState
 from faying.joint.figure import mode_axes, pressure_axes
-from faying.joint.modal import MAX_MODES, SOLVERS, ModalProblem, ModesChoice
-from faying.joint.preload import PreloadProblem
+from faying.joint.modal import MAX_MODES, SOLVERS, Engine, ModalProblem, ModesChoice, Vibration
 from faying.joint.preload_case import PreloadCase
-from faying.joint.shared_modes import EXACT, SharedModes
+from faying.joint.shared_modes import Reanalysis
 from faying.joint.springs import Springs
 from faying.joint.strength import bolt_notes, material_notes, pressure_notes
-from faying.joint.support_check import check_motions, checked_preload, open_joints
+from faying.joint.support_check import open_joints
 from faying.misuse import checked_call, shortened
 from faying.notes import Note, percent
-from faying.numerics.damped import DampedModes, damped_near
-from faying.numerics.modes import Modes
 from faying.style import Summary
 from faying.text import notes_row, titled
 from faying.typing import Array
@@ -34,32 +32,17 @@ if TYPE_CHECKING:
 MAX_ROWS = 10  # of a summary
 
 
-@dataclass(frozen=True, kw_only=True)
-class Vibration:
-    """Real and complex modes under the springs of the joints, with stiffness and loss [N/m] that they belong to."""
-
-    modes: Modes
-    damped: DampedModes
-    stiffness: Any
-    loss: Any
+ENGINES: dict[str, Callable[[ModalProblem, Sequence[PreloadCase]], Engine]] = {
+    "reanalysis": Reanalysis,
+    "direct": Direct,
+}
 
 
-def vibrate(
-    problem: ModalProblem, springs: Sequence[Springs[Interface]], preload: PreloadProblem, shared: SharedModes
-) -> Vibration:
-    """Find the modes of a structure under the springs of its joints; preload and shared lend their factorisations.
-
-    Raises InputError where a part moves freely.
-    """
-    structure, choice = problem.structure, problem.choice
-    shared.begin(problem, preload)
-    modes, stiffness = shared.of(problem, springs)
-    loss = structure.joint_loss(springs, viscous=choice.damping == "viscous")
-    check_motions(structure, modes)
-    preload.adopt_factor(modes.factorisation, problem.shift_frequency)
-    assert shared.near is not None
-    damped = damped_near(shared.near, modes, stiffness, loss, count=choice.count, kind=choice.damping, tolerance=EXACT)
-    return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
+def engine_for(name: str, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> Engine:
+    """The engine of a name, for a structure at its preloads. Raises InputError for another name than `ENGINES` has."""
+    if name not in ENGINES:
+        raise InputError(f"engine = {shortened(name)}; allowed: {', '.join(ENGINES)}")
+    return ENGINES[name](problem, preloads)
 
 
 @checked_call
@@ -242,15 +225,16 @@ def solve_structure(
     damping: Literal["hysteretic", "viscous"],
     order: Sequence[str] | None,
     solver: str | None,
+    engine: str,
 ) -> State:
     """Solve a structure under one preload; see `Structure.solve`."""
     choice = ModesChoice(count=_count(modes), damping=damping, solver=_solver(solver))
     case = preload_case(structure, preload, order)
     problem = ModalProblem(structure=structure, choice=choice)
-    assembly = structure.assembly(solver=solver)
-    found = checked_preload(structure, assembly, case)
+    solving = engine_for(engine, problem, [case])
+    found = solving.preload(0)
     springs = structure.springs(found.pressures)
-    vibration = vibrate(problem, springs, assembly, SharedModes())
+    vibration = solving.vibrate(springs)
     notes = [
         *structure.notes,
         *(note for joint in structure.joints for note in joint.assumptions),

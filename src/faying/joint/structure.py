@@ -41,6 +41,7 @@ class Structure(BoltedStructure):
         damping: Literal["hysteretic", "viscous"] = "hysteretic",
         order: Sequence[str] | None = None,
         solver: str | None = None,
+        engine: Literal["reanalysis", "direct"] = "reanalysis",
     ) -> State:
         """Tighten the bolts and find the modes, as a study does.
 
@@ -50,6 +51,8 @@ class Structure(BoltedStructure):
             damping: Kind of loss of the joints.
             order: Names of the bolts in the order of tightening, any of them more than once; None pulls all at once.
             solver: What factorises the matrices, by the names of a study; chosen where None.
+            engine: "reanalysis", one factorisation for preload and modes; or "direct", one for each Newton step and
+                for the modes, to check the other by.
 
         Returns:
             The state: pressures, springs of the joints, modes.
@@ -58,4 +61,4 @@ class Structure(BoltedStructure):
             InputError: A preload is missing or not positive, or a part is free to move.
             NotConverged: An iteration stops short.
         """
-        return solve_structure(self, preload, modes=modes, damping=damping, order=order, solver=solver)
+        return solve_structure(self, preload, modes=modes, damping=damping, order=order, solver=solver, engine=engine)

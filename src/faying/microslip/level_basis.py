@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from faying.joint.equilibrium import PreloadState
-from faying.joint.state import Vibration
+from faying.joint.modal import Vibration
 from faying.joint.structure import Structure
 from faying.microslip.levels import LevelCycle, LevelModel, level_model
 from faying.microslip.microslip import Microslip

@@ -59,13 +59,6 @@ def _inverse_root(gram: Array) -> Array:
     return np.asarray((turn / np.sqrt(squares)) @ turn.T)
 
 
-def grown(small: Array, operator: Any, basis: Array, new: Array) -> Array:
-    """An operator projected on a basis (n, m) and on columns (n, k) added to it, from its projection on the basis."""
-    image = operator @ new
-    corner, side = new.T @ image, basis.T @ image
-    return np.block([[small, side], [side.T, (corner + corner.T) / 2]])
-
-
 class Span:
     """Vectors (n, m), orthonormal with the mass, and a stiffness projected on them.
 

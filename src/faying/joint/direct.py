@@ -1,14 +1,20 @@
-"""Equilibrium under the bolts by Newton's method as it is written: each step factorises the tangent stiffness."""
+"""Each state by itself: Newton with a factorisation for each step, Lanczos with one for each set of modes."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 
-from faying.fe.interface import Motion
-from faying.joint.equilibrium import Equilibrium, Steps, StickSlip, admissible, check_balance
+from faying.fe.interface import Interface, Motion
+from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StepWanted, admissible, check_balance
 from faying.joint.joint_law import JointLaw
+from faying.joint.modal import EXACT, ModalProblem, Vibration
+from faying.joint.preload_case import PreloadCase
+from faying.joint.springs import Springs
+from faying.joint.support_check import check_motions, checked_preload
 from faying.numerics.constraint import constrain
+from faying.numerics.damped import damped_modes
+from faying.numerics.modes import Modes, lowest_modes
 from faying.numerics.solve import factorise
 from faying.typing import Array, Index
 
@@ -59,21 +65,15 @@ class PlainPreload(Equilibrium):
             push = push + joint.forces(offset, np.zeros((len(offset), 2)))
         return self._solved(stiffness, push)
 
-    def _direction(
-        self, u: Array, force: Array, slip_states: list[StickSlip], accuracy: float
-    ) -> Steps[tuple[Array, int]]:
+    def _direction(self, wanted: StepWanted) -> Step:
         from scipy.sparse import block_diag
 
         stiffness = self.stiffness
-        for interface, k_n, k_t in self._tangents(u, slip_states):
+        for interface, k_n, k_t in self._tangents(wanted.u, wanted.slip_states):
             local = np.zeros((len(k_n), 3, 3))
             local[:, 0, 0], local[:, 1:, 1:] = k_n, k_t
             stiffness = stiffness + interface.relative.T @ block_diag(local, format="csr") @ interface.relative
-        yield from ()
-        return self._solved(stiffness, force), 1
-
-    def _near(self, forces: Array) -> Array:
-        raise AssertionError("no step of this iteration asks for a solution near its own")
+        return self._solved(stiffness, wanted.force), 1
 
     def _admissible(self, force: Array) -> Array:
         return admissible(force, self._rigid, self._fixed)
@@ -92,3 +92,62 @@ def _holding(rigid: Array) -> Index:
         return np.zeros(0, dtype=np.int64)
     _, _, order = qr(rigid.T, mode="economic", pivoting=True)
     return np.asarray(order[: rigid.shape[1]], dtype=np.int64)
+
+
+@final
+class Direct:
+    """An `Engine` that keeps nothing from one state to the next, to check the other by."""
+
+    def __init__(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> None:
+        structure = problem.structure
+        self.problem, self.preloads = problem, preloads
+        self._equilibrium = PlainPreload(
+            structure.supported_stiffness,
+            structure.rigid,
+            [(joint.interface, joint.law) for joint in structure.joints],
+            friction=[joint.friction for joint in structure.joints],
+            fixed=structure.fixed,
+            solver=problem.choice.solver,
+        )
+
+    def preload(self, number: int) -> PreloadState:
+        """See `Engine`."""
+        return checked_preload(self.problem.structure, self._equilibrium, self.preloads[number])
+
+    def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
+        """See `Engine`."""
+        problem, structure, choice = self.problem, self.problem.structure, self.problem.choice
+        modes, stiffness = self._modes(springs)
+        check_motions(structure, modes)
+        loss = structure.joint_loss(springs, viscous=choice.damping == "viscous")
+        damped = damped_modes(
+            modes,
+            stiffness,
+            structure.dynamic_matrices[1],
+            loss,
+            rigid=problem.rigid_count,
+            count=choice.count,
+            kind=choice.damping,
+            tolerance=EXACT,
+        )
+        return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
+
+    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
+        """See `Engine`."""
+        return self._modes(springs)[0].frequencies[self.problem.rigid_count :][: self.problem.choice.count]
+
+    def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Direct":
+        """See `Engine`."""
+        return Direct(problem, preloads)
+
+    def _modes(self, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any]:
+        problem, structure = self.problem, self.problem.structure
+        stiffness, _ = structure.coupled(springs)
+        return lowest_modes(
+            stiffness,
+            structure.dynamic_matrices[1],
+            problem.mode_count,
+            shift_frequency=problem.shift_frequency,
+            solver=problem.choice.solver,
+            rigid=structure.rigid,
+        ), stiffness
