@@ -65,3 +65,10 @@ def test_a_grade_that_is_none():
 
 def test_a_thread_says_what_it_is():
     assert str(Thread.parse("M8")) == "M8x1.25"
+
+
+@pytest.mark.parametrize("pitch", [1.25e-6, 0.1e-3, 2.7e-3])
+def test_a_pitch_in_another_unit_is_refused(pitch):
+    """1.25 um for 1.25 mm would give M8 a stress area of 50 mm2 in place of 37."""
+    with pytest.raises(faying.InputError, match="a pitch from 0.2 mm to a third of the diameter"):
+        Thread(diameter=8e-3, pitch=pitch)

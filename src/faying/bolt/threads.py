@@ -81,6 +81,7 @@ THICK, PROOF_THICK = 16e-3, 600e6  # beyond this diameter [m], class 8.8 has thi
 STRENGTH_THICK = (830e6, 660e6)  # and these strengths
 MIN_DIAMETER, MAX_DIAMETER = 1.6e-3, 39e-3  # diameters [m] that ISO 898-1 covers
 THINNEST, THICKEST = 1e-3, 300e-3  # diameters [m] of the threads of ISO 261
+FINEST = 0.2e-3  # m: pitch of the finest thread of ISO 261
 FORM = re.compile(r"M([0-9]+(?:\.[0-9]+)?)(?:\s*x\s*([0-9]+(?:\.[0-9]+)?))?")
 
 
@@ -90,7 +91,7 @@ class Thread:
 
     Args:
         diameter: Nominal diameter [m].
-        pitch: Pitch [m], less than a third of the diameter.
+        pitch: Pitch [m], at least 0.2 mm and less than a third of the diameter.
 
     Raises:
         InputError: No such thread.
@@ -100,9 +101,9 @@ class Thread:
     pitch: float
 
     def __post_init__(self) -> None:
-        if not (THINNEST <= self.diameter <= THICKEST and 0 < self.pitch < self.diameter / 3):
+        if not (THINNEST <= self.diameter <= THICKEST and FINEST * (1 - 1e-9) <= self.pitch < self.diameter / 3):
             raise InputError(
-                f"thread {self}: metric threads are M1 to M300, with a pitch of less than a third of the diameter"
+                f"thread {self}: metric threads are M1 to M300, with a pitch from 0.2 mm to a third of the diameter"
             )
 
     def __str__(self) -> str:
