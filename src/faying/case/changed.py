@@ -2,13 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from faying.case.case import Case
 from faying.case.solve import LoadedCase
 from faying.joint.joint_law import JointLaw
+from faying.numerics.follow import follow
 from faying.reduction.reduce import Gapped, Reduction
+from faying.reduction.reduced import Variant
 from faying.typing import Array
 
 TOLERANCE = 2e-4  # of a frequency, where what is changed moves one by a thousandth and more
@@ -38,6 +41,8 @@ def can_change(case: Case) -> bool:
 def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[ChangedCase]) -> list[Array]:
     """Frequencies [Hz] (loads, m) of each change; the basis is made for the first and the last load of all of them.
 
+    They are in the order of the modes of the states, each that of the mode whose shape it has.
+
     Raises NotConverged where a change has no equilibrium.
     """
     if not changes:
@@ -60,7 +65,19 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
     ends = sorted({0, len(forces) - 1})
     states_at_ends = reduction.train_together([loads[k] for loads in every for k in ends], TOLERANCE)
     starts = [state.displacement for state in states_at_ends]
+    plain = ChangedCase.nothing(case)
+    at_rest = cache(
+        lambda k: reduction.evaluate_at(
+            Gapped(laws=plain.laws, forces=forces[k], friction=friction, gaps=plain.gaps), starts[0]
+        )
+    )
+
+    def followed(one: Variant, k: int) -> Array:
+        """Frequencies in the order of the modes at a load."""
+        at = at_rest(k)
+        return np.asarray(one.frequencies[follow(at.shapes, one.shapes, reduction.model.dynamic_mass, at.frequencies)])
+
     return [
-        np.stack([reduction.evaluate_at(one, starts[len(ends) * number]).frequencies for one in loads])
+        np.stack([followed(reduction.evaluate_at(one, starts[len(ends) * number]), k) for k, one in enumerate(loads)])
         for number, loads in enumerate(every)
     ]

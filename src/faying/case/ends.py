@@ -14,15 +14,17 @@ from faying.joint.equilibrium import PreloadState
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
+from faying.numerics.modes import Modes
 from faying.typing import Array
 
 Pair = tuple[Array, Array]  # frequencies [Hz] at both ends of one number
 
 
-def ends_of(case: Case, preload: PreloadState, engine: Engine) -> dict[str, Pair]:
+def ends_of(case: Case, preload: PreloadState, engine: Engine, modes: Modes) -> dict[str, Pair]:
     """Frequencies of one load at 5 and at 95 % of what changes no pressure: the scan's range, and k_t/k_n.
 
-    "contact": with each half of the points of the joints, for the error of the mesh.
+    modes: at this load, whose order the frequencies have. "contact": with each half of the points of the joints, for
+    the error of the mesh.
     """
     joints, out = case.structure.joints, {}
 
@@ -30,7 +32,7 @@ def ends_of(case: Case, preload: PreloadState, engine: Engine) -> dict[str, Pair
         both = []
         for k in (0, 1):
             changed = case.structure.with_joints(laws=[pair[k] for pair in laws])
-            both.append(engine.frequencies(changed.springs(preload.pressures)))
+            both.append(engine.frequencies(changed.springs(preload.pressures), modes, one_way=True))
         return both[0], both[1]
 
     laws = [joint.law for joint in joints]
@@ -49,8 +51,8 @@ def ends_of(case: Case, preload: PreloadState, engine: Engine) -> dict[str, Pair
     if case.study.modes.intervals and not any(joint.per_node for joint in joints):
         springs = case.structure.springs(preload.pressures)
         out["contact"] = (
-            engine.frequencies([half_of(one, 0) for one in springs]),
-            engine.frequencies([half_of(one, 1) for one in springs]),
+            engine.frequencies([half_of(one, 0) for one in springs], modes, one_way=False),
+            engine.frequencies([half_of(one, 1) for one in springs], modes, one_way=False),
         )
     return out
 

@@ -93,7 +93,7 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     above_range = bonded_above_range(case, load, springs, damped)
     return LoadedCase(
         load=load,
-        ends=ends_of(case, preload, engine) if ranges else None,
+        ends=ends_of(case, preload, engine, modes) if ranges else None,
         levels=level_damping(case, preload, found) if ranges else None,
         preload=preload,
         springs=springs,

@@ -17,8 +17,9 @@ from faying.export.condensed import CondensedJoint, condensed_modes
 from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.support_check import check_motions, checked_preload
-from faying.measured.mac import mac, partners
+from faying.measured.mac import mac
 from faying.misuse import checked_call
+from faying.numerics.follow import partners
 from faying.progress import Report
 from faying.result.fields import listed
 from faying.study.load import vector

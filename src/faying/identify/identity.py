@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from faying.measured.mac import mac, partners
+from faying.measured.mac import mac
 from faying.measured.pairing import FARTHEST
+from faying.numerics.follow import LIKE, partners
 from faying.sweeps.work import Rows
 from faying.typing import Array, Index
 
-LIKE = 0.5  # MAC with the median's mode below which a mode has no name
 NEAREST, MIN_SAMPLES = 0.1, 8  # share of the samples, and their number, that say which modes are the test's
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from faying.fe.interface import Interface, Motion
 from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StepWanted, admissible, check_balance
 from faying.joint.joint_law import JointLaw
-from faying.joint.modal import EXACT, ModalProblem, Vibration
+from faying.joint.modal import EXACT, ModalProblem, Vibration, in_order_of
 from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions, checked_preload
@@ -132,9 +132,10 @@ class Direct:
         )
         return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
 
-    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
+    def frequencies(self, springs: Sequence[Springs[Interface]], before: Modes, *, one_way: bool) -> Array:
         """See `Engine`."""
-        return self._modes(springs)[0].frequencies[self.problem.rigid_count :][: self.problem.choice.count]
+        modes, _ = self._modes(springs)
+        return in_order_of(before, self.problem, lambda shapes: modes, one_way)
 
     def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Direct":
         """See `Engine`."""

@@ -1,8 +1,10 @@
 """What is asked about the vibration of a structure, who answers it, and the answer."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
+
+import numpy as np
 
 from faying.fe.interface import Interface
 from faying.joint.bolted import BoltedStructure
@@ -10,6 +12,7 @@ from faying.joint.equilibrium import PreloadState
 from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs
 from faying.numerics.damped import DampedModes
+from faying.numerics.follow import follow, may_cross
 from faying.numerics.modes import Modes
 from faying.numerics.solve import BY_PARTS, MPI
 from faying.typing import Array
@@ -78,8 +81,26 @@ class Engine(Protocol):
     def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
         """Real and complex modes with springs on the joints. Raises InputError where a part moves freely."""
 
-    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
-        """Frequencies [Hz] of the elastic modes with other springs, their squares to 1e-4 or nearer."""
+    def frequencies(self, springs: Sequence[Springs[Interface]], before: Modes, *, one_way: bool) -> Array:
+        """Frequencies [Hz] of the elastic modes with other springs, their squares to 1e-4 or nearer.
+
+        before: the modes whose order they have, each that of the mode whose shape it has; one_way: whether no spring is
+        softer than those of these modes, or none is stiffer.
+        """
 
     def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Engine":
         """The same for the structure under another law or form, on the same mesh."""
+
+
+def in_order_of(before: Modes, problem: ModalProblem, found: Callable[[bool], Modes], one_way: bool) -> Array:
+    """Frequencies [Hz] (m,) of the lowest elastic modes under other springs, in the order of those before.
+
+    found: returns the modes, with shapes where these are asked for: only where modes may have changed places.
+    """
+    lowest = slice(problem.rigid_count, problem.rigid_count + problem.choice.count)
+    here = before.frequencies[lowest]
+    if one_way and not may_cross(here, there := found(False).frequencies[lowest]):
+        return there
+    modes, mass = found(True), problem.structure.dynamic_matrices[1]
+    order = follow(before.shapes[:, lowest], modes.shapes[:, lowest], mass, here)
+    return np.asarray(modes.frequencies[lowest][order])

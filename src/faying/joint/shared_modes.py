@@ -7,7 +7,7 @@ from faying.errors import NotConverged
 from faying.fe.interface import Interface
 from faying.joint.assembled_parts import added
 from faying.joint.equilibrium import PreloadState
-from faying.joint.modal import EXACT, SPARE_MODES, ModalProblem, Vibration
+from faying.joint.modal import EXACT, SPARE_MODES, ModalProblem, Vibration, in_order_of
 from faying.joint.preload import PreloadProblem
 from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs
@@ -234,13 +234,16 @@ class Reanalysis:
         )
         return Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
 
-    def frequencies(self, springs: Sequence[Springs[Interface]]) -> Array:
+    def frequencies(self, springs: Sequence[Springs[Interface]], before: Modes, *, one_way: bool) -> Array:
         """See `Engine`."""
         if not self._looked and self._shared.near is not None:
             self._shared.near.look_everywhere()
             self._looked = True
-        modes, _ = self._shared.of(self.modal, springs, tolerance=RANGE_ERROR, shapes=False)
-        return modes.frequencies[self.modal.rigid_count :][: self.modal.choice.count]
+
+        def found(shapes: bool) -> Modes:
+            return self._shared.of(self.modal, springs, tolerance=RANGE_ERROR, shapes=shapes)[0]
+
+        return in_order_of(before, self.modal, found, one_way)
 
     def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Reanalysis":
         """See `Engine`; the factorisation at hand serves the other structure, too."""

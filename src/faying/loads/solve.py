@@ -25,9 +25,10 @@ from faying.loads.contact import LoadedContact
 from faying.loads.record import LoadCases
 from faying.loads.remarks import load_notes
 from faying.loads.statics import LoadedState, LoadStatics
-from faying.measured.mac import Weighted, partners
+from faying.measured.mac import Weighted
 from faying.notes import Note
 from faying.numerics.changed import UpdatedStiffness
+from faying.numerics.follow import partners
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
 from faying.result.provenance import Provenance

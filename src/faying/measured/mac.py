@@ -7,7 +7,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.numerics.product import product
-from faying.typing import Array, Index
+from faying.typing import Array
 
 
 def mac(a: Any, b: Any, mass: Any | None = None) -> Array:
@@ -25,19 +25,6 @@ def mac(a: Any, b: Any, mass: Any | None = None) -> Array:
         return Weighted.of(b.T, mass).mac(Weighted.of(a.T, mass))
     a, b = _unit(a), _unit(b)
     return np.asarray(np.minimum(np.abs(a.conj() @ b.T) ** 2, 1.0))
-
-
-def partners(alike: Array, least: float = 0.0) -> Index:
-    """For each row of a table of MAC (m, k) its column, each once, so that the sum is greatest: (m,).
-
-    -1 where there is none, or where the MAC is below the least.
-    """
-    from scipy.optimize import linear_sum_assignment
-
-    rows, columns = linear_sum_assignment(alike, maximize=True)
-    out = np.full(len(alike), -1, dtype=np.int64)
-    out[rows] = np.where(alike[rows, columns] >= least, columns, -1)
-    return out
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.measured.mac import partners
+from faying.numerics.follow import partners
 from faying.typing import Array, Index
 
 FREQUENCY_SCALE = 0.05  # relative difference in frequency that costs 1

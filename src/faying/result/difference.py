@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from faying.joint.preload_case import preload_index
-from faying.measured.mac import mac, partners
+from faying.measured.mac import mac
 from faying.misuse import checked_call
+from faying.numerics.follow import partners
 from faying.result.result import Result
 from faying.style import Summary
 from faying.text import csv_text, few

@@ -11,11 +11,11 @@ from faying.backbones.choice import friction_of
 from faying.backbones.result import measured_points
 from faying.errors import InputError
 from faying.identify.backbones import Backbones
-from faying.identify.identity import LIKE
 from faying.identify.sampling.ensemble import Ensemble, by_reason
 from faying.identify.sampling.evaluate import Reduced
 from faying.joint.structure import Structure
 from faying.microslip.epmc import PER_DECADE
+from faying.numerics.follow import LIKE
 from faying.result.backbone import Backbone
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.study import Study

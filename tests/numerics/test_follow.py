@@ -1,0 +1,62 @@
+"""Which mode is which after a change, against modes that are followed in small steps, and in closed form."""
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from faying.numerics.follow import follow, may_cross
+
+
+def oscillators(stiffness):
+    """Modes of masses on springs to the ground with weak springs between neighbours: frequencies, shapes."""
+    K = np.diag(np.asarray(stiffness, float))
+    for k in range(len(K) - 1):
+        K[k, k] += 1e-7
+        K[k + 1, k + 1] += 1e-7
+        K[k, k + 1] = K[k + 1, k] = -1e-7
+    values, shapes = eigh(K, np.diag([1.0, 2.0, 1.5][: len(K)]))
+    return np.sqrt(values), shapes
+
+
+MASS = np.diag([1.0, 2.0, 1.5])
+
+
+@pytest.mark.parametrize(
+    "last", [(9.0, 4.0, 6.0), (1.0, 14.0, 2.0), (6.0, 2.0, 12.0), (8.0, 6.5, 9.5), (1.5, 7.0, 10.0)]
+)
+def test_modes_keep_their_shapes_through_crossings(last):
+    """The product of small steps, in each of which the nearest shape is plain, and one step over all of them."""
+    first = np.array([1.0, 6.0, 9.0])
+    before, shapes = oscillators(first)
+    order, at = np.arange(3), shapes
+    for share in np.linspace(0, 1, 384)[1:]:
+        _, new = oscillators(first + share * (np.array(last) - first))
+        step = np.abs(at.T @ MASS @ new).argmax(axis=1)
+        order, at = step[order], new
+    after, moved = oscillators(last)
+    found = follow(shapes, moved, MASS, before)
+    assert list(found) == list(order)
+    rising = np.all(np.array(last) >= first)
+    assert not rising or may_cross(before, after) == (list(order) != [0, 1, 2])
+
+
+def test_twins_are_followed_as_a_plane():
+    """A third mode passes twins whose directions turn by 40 degrees: it keeps its own place."""
+    turn = np.deg2rad(40)
+    twins = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1.0]])
+    before = np.array([100.0, 100.001, 130.0])
+    after = twins[:, [2, 0, 1]]  # torsion is the lowest now
+    found = follow(np.eye(3), after, np.eye(3), before)
+    assert sorted(found[:2]) == [1, 2]
+    assert found[2] == 0
+    assert may_cross(before, np.array([90.0, 105.0, 105.001]))
+
+
+def test_a_mode_that_left_the_range_takes_the_place_that_is_left():
+    other = np.eye(4)[:, [0, 1, 3]]  # the third shape is gone, a new one came
+    assert list(follow(np.eye(4)[:, :3], other, np.eye(4), np.array([1.0, 2.0, 3.0]))) == [0, 1, 2]
+
+
+def test_ranges_that_are_apart_cannot_cross():
+    assert not may_cross(np.array([1.0, 2.0, 4.0]), np.array([1.5, 2.5, 5.0]))
+    assert may_cross(np.array([1.0, 2.0, 4.0]), np.array([2.1, 2.5, 5.0]))
