@@ -228,3 +228,12 @@ def test_steady_response_at_the_frequency_of_the_curve_has_its_amplitude():
     assert np.hypot(c, s) == pytest.approx(0.3, rel=0.02)
     # at its own frequency the motion is a quarter behind the force: what it is off is a difference of frequency
     assert abs(zeta * s / c) < 1e-4 + SLOWER
+
+
+def test_the_level_of_an_amplitude_is_that_of_a_solved_point_in_the_linear_limit():
+    """Omega squared times the motion of the observer: a power of omega less would be off by that frequency."""
+    model = chain([1.0, 0.7], [3.0, 2.0], replace(slider(1.0, 0.5), friction=1e9))
+    for mode in (0, 1):
+        epmc = Epmc(model=model, mode=mode, observer=np.array([0.3, -1.0]), samples=256)
+        assert abs(epmc.linear_frequency - 1) > 0.2
+        assert epmc.level_of(0.02) == pytest.approx(epmc.solve(0.02).level, rel=1e-6)
