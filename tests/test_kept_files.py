@@ -330,3 +330,11 @@ def test_a_terminal_that_is_closed_stops_a_command_tidily(tmp_path):
     assert process.returncode == 0 or b"faying: interrupted" in err
     assert b"Traceback" not in err
     assert not [one.name for one in tmp_path.iterdir() if one.name.endswith(".part")]
+
+
+def test_the_folder_that_one_stands_in(tmp_path, monkeypatch):
+    """Given as "." it has no name of its own."""
+    monkeypatch.chdir(tmp_path)
+    with files.together(Path("."), "give another") as hidden:
+        (hidden / "a.txt").write_text("a")
+    assert [one.name for one in tmp_path.iterdir()] == ["a.txt"]

@@ -151,14 +151,14 @@ def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Pa
         InputError: the folder cannot be made, or another process writes to it; faults of writing inside it name the
             file's final place.
     """
-    name = f".{folder.name}.part"
+    name = f".{Path(os.path.abspath(folder)).name}.part"  # the folder may be given as "."
     if folder.is_symlink() and not folder.exists():
         raise InputError(f"{folder} is a link that leads nowhere; remove it, or {remedy}")
-    for left in (folder / name, folder.with_name(name)):
+    for left in (folder / name, folder.parent / name):
         if left.is_dir():
             release(left, locked(left, folder, remedy))
     with new_folder(folder.parent, remedy):
-        hidden = folder / name if folder.is_dir() else folder.with_name(name)
+        hidden = folder / name if folder.is_dir() else folder.parent / name
         if folder.exists() and not folder.is_dir():
             raise InputError(f"cannot make the folder {folder}: a file has this name; {remedy}")
         lock = locked(hidden, folder, remedy)

@@ -42,8 +42,11 @@ def test_a_curve_has_the_values_of_a_run_at_its_levels(study, curves):
     joints = tuple(replace(joint, friction=0.2) for joint in study.joints)
     modes = replace(study.modes, levels=(10.0,), intervals=False)
     found = run(replace(study, joints=joints, modes=modes))
-    assert curves.damping[[0]] - 1e-4 == pytest.approx(found.level_slip[-1], rel=1e-3, abs=1e-9)
-    assert curves.frequencies[[0]] == pytest.approx(found.level_frequencies[-1], rel=1e-6)
+    # the basis of the curve is made for 100 m/s2, that of the run for 10: damping is right to a hundredth of itself,
+    # and what slip takes from a frequency, which is as small as damping, to a few
+    slip = found.level_slip[-1]
+    assert curves.damping[[0]] - 1e-4 == pytest.approx(slip, rel=1e-2, abs=1e-9)
+    assert np.all(abs(curves.frequencies[[0]] / found.level_frequencies[-1] - 1) <= 0.03 * slip + 1e-8)
     assert curves.load == pytest.approx(found.loads[-1])
 
 
