@@ -263,7 +263,11 @@ def test_displacement_of_a_support(held):
 def test_a_rigid_motion_of_all_supports_does_nothing(held):
     """100 mm along an axis strain nothing: no force of a bolt changes, nothing slides, superposition holds."""
     load = faying.Load("m", displacements=[faying.Displacement("p0.left", ("100 mm", "40 mm", "-70 mm"))])
-    found = faying.load_cases(held[1], [load], modes=False)
+    push = faying.Load("push", forces=[faying.Force("p1.right", force=(70.0, 0, 0))])
+    pull = faying.Load("pull", forces=[faying.Force("p1.right", force=(-70.0, 0, 0))])
+    nothing = faying.Load("nothing", combine={"push": 1.0, "pull": 1.0})
+    found = faying.load_cases(held[1], [load, push, pull, nothing], modes=False)
+    assert found.superposition[3] == pytest.approx(0, abs=1e-6)  # not one rounding over another
     assert found.displacement[0] == pytest.approx(np.linalg.norm([0.1, 0.04, 0.07]), rel=1e-9)
     assert found.bolt_force[0] == pytest.approx(found.bolt_preload, abs=1e-3)
     assert found.normal_force[0] == pytest.approx(found.normal_preload, abs=1e-3)

@@ -217,11 +217,15 @@ def test_the_load_across_each_bolt_is_that_of_the_equilibrium_of_the_part_beyond
         faying.Load("shear", forces=[faying.Force("top.seat", force=(240.0, 320.0, 0), point=middle)]),
         faying.Load("torque", forces=[faying.Force("top.seat", force=(0, 0, 0), moment=(0, 0, 6.0), point=middle)]),
         faying.Load("pull", forces=[faying.Force("top.seat", force=(0, 0, 4000.0), point=middle)]),
+        faying.Load("both", forces=[faying.Force("top.seat", force=(80.0, 0, 0), moment=(0, 0, 2.0), point=middle)]),
     ]
     _, found = crossing(made, 4e3, loads)
     assert found.transverse_load[0] == pytest.approx(4 * [100], rel=1e-3)
     assert found.transverse_load[1] == pytest.approx(4 * [6.0 / (4 * r)], rel=1e-3)
     assert found.transverse_load[2] == pytest.approx(4 * [0], abs=0.5)
+    arms = np.array(CORNERS) * MM - 20 * MM
+    both = np.array([20.0, 0]) + 2.0 / (4 * r**2) * np.stack([-arms[:, 1], arms[:, 0]], axis=1)
+    assert found.transverse_load[3] == pytest.approx(np.linalg.norm(both, axis=1), rel=1e-3)
     if friction is not None:
         assert found.bolt_shear[0].min() > 1.0
 

@@ -118,10 +118,14 @@ def test_a_way_back_to_no_load_leaves_slip(strip):
         pull("up", force, increments=6),
         faying.Load("off", after="up", increments=6),
         pull("up again", force, after="off", increments=6),
+        pull("back", -force),
+        faying.Load("undone", combine={"up": 1.0, "back": 1.0}, after="up", increments=6),
     ]
     found = faying.load_cases(strip, loads, modes=False)
-    up, off, again = found.displacement
+    up, off, again, _, undone = found.displacement
     assert off == pytest.approx(up - 2 * end_motion(force / 2)[0], rel=0.03)
     assert again == pytest.approx(up, rel=1e-3)
-    assert found.after == ("", "up", "off")
+    assert found.after == ("", "up", "off", "", "up")
     assert found.superposition[1] == 1.0  # the linear answer to nothing is nothing
+    assert undone == pytest.approx(off, rel=1e-6)
+    assert found.superposition[4] == 1.0  # to loads that cancel out it is rounding

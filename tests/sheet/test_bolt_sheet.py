@@ -384,6 +384,18 @@ def test_another_case_never_takes_stress_from_a_bolt(made):
         assert both.row("F_Smax").result.value >= sheet.row("F_Smax").result.value * (1 - 1e-9)
 
 
+def test_embedding_counts_before_the_load_cases_of_the_least_preload(made):
+    bare = {key: value for key, value in PULL.items() if key != "temperature"}
+    given = {"load": "pull", "embedding": "8 um"}
+    (sheet,) = bolt_sheet(made(bolt_sheet=given, support=[HELD], load=[bare])).sheets
+    least = sheet.row("F_Vmin").result.value
+    assert least < 0.9 * sheet.row("F_Mmin").result.value
+    found = cases_at(made, least, [bare])
+    change, taken = found.bolt_force[0, 0] - least, found.working_load[0, 0] - (found.bolt_force[0, 0] - least)
+    assert sheet.row("F_SAo").result.value == pytest.approx(change, rel=1e-6)
+    assert sheet.row("F_KRmin").result.value == pytest.approx(least - taken, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("table", "text"),
     [
