@@ -38,37 +38,29 @@ _STEPS = r"BOUNDARY|MATERIAL|ORIENTATION|AMPLITUDE|EQUATION|SOLID SECTION|RESTAR
 _ABAQUS = rf"(?:[ \t]*(?:\*\*.*)?\n)*[ \t]*\*[ \t]*(?:{_PARTS}|{_STEPS})\b|{_ROW}"  # rows alone: lines to include
 _CARDS = r"GRID|C(?:TETRA|HEXA|PENTA|TRIA|QUAD|ORD)\w*|DMIG|MAT1|PSOLID|PLOAD4|SET1|RBE[23]|CONM2|SPC1?|EIGRL"
 _CONTROL = r"BEGIN[ \t]+BULK|CEND|ENDDATA|SOL[ \t]+\w+|NASTRAN|ASSIGN|INCLUDE[ \t]+['\"].*"
-_BEFORE = (
-    r"(?:[ \t]*(?:\$.*|(?:ID|TIME|PARAM)\b.*|[A-Z]+[ \t]*(?:\(.*\))?[ \t]*=.*)?\n)*"  # what is no sign of Nastran alone
-)
+_BEFORE = r"(?:[ \t]*(?:\$.*|(?:ID|TIME|PARAM)\b.*|[A-Z][^=\n]*=.*)?\n)*+"  # lines that other programs have, too
 _NASTRAN = rf"{_BEFORE}[ \t]*(?:(?:{_CONTROL})\s|(?:{_CARDS})\*?[ \t,])"
 _TOML = r"(?=(?:[ \t]*(?:#.*)?\n)*[ \t]*(?:\[+[\w.\" -]+\]|[\w.\"-]+[ \t]*=))[\s\S]*?^[ \t]*\[geometry\]"
+_BULK = (".bdf", ".nas", ".dat", ".pch")
 _XML = r"\s*(?:<[?!][^>]*>\s*)*<VTKFile\b"
 _SCANS = r"DIGITAL SURF|DSCOMPRESSED|VCA DATA|[ab]BCR-|Alicona|II\*\0|MM\0\*|\x93NUMPY|CDF|\x88\x1b\x03"
 _ENDS = (".sur", ".opd", ".opdx", ".plux", ".sdf", ".al3d", ".tif", ".npy", ".nc")
 _MED = r"\x89HDF[\s\S]*(?:INFOS_GENERALES|ENS_MAA)"
-_GMSH = r"(?:\$Comments[\s\S]*?)?\s*\$MeshFormat\b"
+_RECORD = r"\x89HDF[\s\S]*faying_record"
+_GMSH = r"(?:\$Comments[\s\S]*?\$EndComments)?\s*\$MeshFormat\b"
 _SETS = r"\s*-1[ \t]*\n[ \t]*\d{1,4}b?\s"
+_TESTED = rf"(?={_SETS})(?![\s\S]*^ *-1 *\n *(?:780|2412)\s)[\s\S]*^ *-1 *\n *(?:55|58b?)\s"  # without elements
 
 STEP = FileKind(says="a STEP file", holds=r"[\s\S]{0,52}ISO-10303-21", suffixes=(".step", ".stp"), serves=("geometry",))
-UNIVERSAL = FileKind(
-    says="a universal file", holds=_SETS, suffixes=(".unv", ".uff"), serves=("mesh", "test"), reader="unv"
-)
 ABAQUS = FileKind(
     says="an input file of Abaqus or CalculiX", holds=_ABAQUS, suffixes=(".inp",), serves=("mesh",), reader="abaqus"
 )
 NASTRAN = FileKind(
-    says="an input file of Nastran",
-    holds=_NASTRAN,
-    suffixes=(".bdf", ".nas", ".dat", ".pch"),
-    serves=("mesh", "matrices"),
-    reader="nastran",
+    says="an input file of Nastran", holds=_NASTRAN, suffixes=_BULK, serves=("mesh", "matrices"), reader="nastran"
 )
 VTU = FileKind(says="a VTU file", holds=_XML, suffixes=(".vtu",), serves=("mesh",), reader="vtk")
 MED = FileKind(says="a MED file", holds=_MED, suffixes=(".med",), serves=("mesh",), reader="vtk")
-RESULT = FileKind(
-    says="a result of Faying", holds=r"\x89HDF[\s\S]*faying_record", suffixes=(".nc",), serves=("result",)
-)
+RESULT = FileKind(says="a result of Faying", holds=_RECORD, suffixes=(".nc",), serves=("result",))
 STUDY = FileKind(says="a study", holds=_TOML, suffixes=(".toml",), serves=("study",))
 X3P = FileKind(says="an X3P file", holds=r"PK[\s\S]*\bmain\.xml$", suffixes=(".x3p",), serves=("scan",))
 MARKET = FileKind(says="a matrix in Matrix Market", holds=r"%%MatrixMarket", suffixes=(".mtx",), serves=("matrices",))
@@ -78,9 +70,11 @@ KINDS = (
     FileKind(
         says="a text of points or heights", holds=_POINTS, suffixes=(".xyz", ".asc", ".txt"), serves=("scan", "numbers")
     ),
-    *(STEP, UNIVERSAL, ABAQUS, NASTRAN, VTU, MED, RESULT, STUDY, X3P, MARKET, SPARSE),
+    *(STEP, ABAQUS, NASTRAN, VTU, MED, RESULT, STUDY, X3P, MARKET, SPARSE),
     FileKind(says="an input file of Ansys (MAPDL)", holds=_MAPDL, suffixes=(".cdb",), serves=("mesh",), reader="mapdl"),
     FileKind(says="a mesh of Gmsh", holds=_GMSH, suffixes=(".msh",), serves=("mesh",), reader="gmsh"),
+    FileKind(says="a hammer test in a universal file", holds=_TESTED, suffixes=(".uff",), serves=("test",)),
+    FileKind(says="a universal file", holds=_SETS, suffixes=(".unv", ".uff"), serves=("mesh", "test"), reader="unv"),
     FileKind(says="a VTK file", holds=r"# vtk DataFile", suffixes=(".vtk",), serves=("mesh",), reader="vtk"),
     FileKind(says="a matrix of CalculiX", holds=_ROW, suffixes=(".sti",), serves=("matrices",), reader="calculix"),
     FileKind(says="an instrument's file", holds=_SCANS, suffixes=_ENDS, serves=("scan",)),

@@ -9,7 +9,7 @@ import click
 from faying import units
 from faying.cli.options import FILE, PATH, frequency_band
 from faying.errors import InputError
-from faying.file_kinds import UNIVERSAL, taken
+from faying.file_kinds import taken
 from faying.text import in_columns, json_text
 
 
@@ -89,7 +89,7 @@ def read_frf(
     from faying.measured.text import read_frf_text
     from faying.measured.uff import read_uff
 
-    if all(taken(file, "test", "numbers") is not UNIVERSAL for file in files):
+    if all("numbers" in taken(file, "test", "numbers").serves for file in files):
         if quantity is None:
             raise InputError(
                 "text files do not state what was measured; give --quantity receptance, mobility or accelerance"
