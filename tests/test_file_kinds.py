@@ -7,8 +7,9 @@ import pytest
 
 import faying
 from faying.decks.included import included
-from faying.file_kinds import ABAQUS, NASTRAN, STUDY, kind_held, kind_of, taken
+from faying.file_kinds import ABAQUS, NASTRAN, RESULT, STUDY, kind_held, kind_of, taken
 from faying.geometry.cad import check_head
+from faying.netcdf import Group, Variable, write
 from tests.helpers import meshfiles
 from tests.helpers.boxes import row
 
@@ -126,6 +127,18 @@ def test_a_zip_archive_is_what_its_files_say(tmp_path):
     assert kind_of(path).says == "an X3P file"
     path.write_bytes(path.read_bytes()[:2000])
     assert kind_of(path) is None
+
+
+def test_a_saved_result_is_one_under_every_name(tmp_path):
+    """Long and short ones; the same without the checksum is any HDF5 file, which its suffix decides."""
+    for size in (1, 50_000):
+        path = tmp_path / "scan.x3p"
+        write(path, Group(variables={"a": Variable(dims=("n",), values=np.random.default_rng(1).random(size))}))
+        assert kind_of(path) is RESULT
+        with pytest.raises(faying.ReadError, match=r"scan.x3p is a result of Faying"):
+            faying.read_scan(path)
+        path.write_bytes(path.read_bytes()[:-78])
+        assert kind_held(path) is None
 
 
 def deck(*lines):

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Literal
 
 from faying.errors import ReadError
+from faying.files import SEAL
 
 HEAD = 1 << 16  # bytes that are looked at: the first groups of HDF5 and the first keyword of a deck are in them
+LENGTH = len(SEAL) + 64  # of the checksum of a file that Faying has saved, at its end
 Use = Literal["geometry", "mesh", "matrices", "scan", "test", "study", "result", "numbers"]
 
 
@@ -46,7 +48,7 @@ _XML = r"\s*(?:<[?!][^>]*>\s*)*<VTKFile\b"
 _SCANS = r"DIGITAL SURF|DSCOMPRESSED|VCA DATA|[ab]BCR-|Alicona|II\*\0|MM\0\*|\x93NUMPY|CDF|\x88\x1b\x03"
 _ENDS = (".sur", ".opd", ".opdx", ".plux", ".sdf", ".al3d", ".tif", ".npy", ".nc")
 _MED = r"\x89HDF[\s\S]*(?:INFOS_GENERALES|ENS_MAA)"
-_RECORD = r"\x89HDF[\s\S]*faying_record"
+_RECORD = rf"\x89HDF[\s\S]*{SEAL.decode()}"  # the checksum behind what Faying saves
 _GMSH = r"(?:\$Comments[\s\S]*?\$EndComments)?\s*\$MeshFormat\b"
 _SETS = r"\s*-1[ \t]*\n[ \t]*\d{1,4}b?\s"
 _TESTED = rf"(?={_SETS})(?![\s\S]*^ *-1 *\n *(?:780|2412)\s)[\s\S]*^ *-1 *\n *(?:55|58b?)\s"  # without elements
@@ -113,12 +115,15 @@ def taken(path: Path, *uses: Use, name: str = "") -> FileKind:
 
 
 def _head(path: Path) -> bytes:
-    """The first bytes of a file, with \\n at the ends of lines; of a zip archive the names of its files."""
+    """The first bytes of a file with \\n at the ends of lines; of HDF5 the last ones, too; of an archive its names."""
     if not path.is_file():
         return b""
     try:
         with path.open("rb") as file:
-            head = file.read(HEAD).removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+            head = file.read(HEAD)
+            file.seek(max(HEAD, path.stat().st_size - LENGTH))
+            head += file.read() if head.startswith(b"\x89HDF") else b""
+        head = head.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
         if head.startswith(b"PK"):
             with zipfile.ZipFile(path) as archive:
                 head = "\n".join(["PK", *archive.namelist()]).encode(errors="replace")
