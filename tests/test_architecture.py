@@ -15,7 +15,7 @@ SOURCE = ROOT / "src" / "faying"
 ORDER = [
     {"errors"},
     {"units", "files", "memory", "typing", "notes", "progress", "apart"},
-    {"checks"},
+    {"checks", "file_kinds"},
     {"hardness", "misuse", "text", "data_sets", "typeset"},
     {"materials", "netcdf", "columns", "distribution", "cache", "style"},
     {"numerics", "surface"},

@@ -172,6 +172,26 @@ def test_a_file_of_no_known_kind_is_refused(server):
     assert ".x3p" in json.loads(text)["fault"]
 
 
+def test_files_of_the_folder_are_listed_by_what_they_hold(server, tmp_path):
+    """Decks and scans of one suffix, a file that a deck includes, and a page that quotes a deck."""
+    files = {
+        "ds.dat": (b"! by hand\n/PREP7\nET,1,185\n", ["mesh"]),
+        "deck.dat": (b"$\nSOL 103\nCEND\n", ["mesh"]),
+        "scan.dat": (b"0 0 1.5\n0 1 1.25\n", ["scan"]),
+        "all.msh": (b"*NODE, NSET=NALL\n1,0,0,0\n", ["mesh"]),
+        "hit.txt": (b"    -1\n    58\n", ["test"]),
+        "decay.csv": (b"time [s],acceleration [m/s^2]\n0,1\n", ["test"]),
+    }
+    for name, (content, _) in files.items():
+        assert "fault" not in json.loads(ask(server, f"api/file?name={name}", "POST", content)[1])
+    (tmp_path / "page.html").write_text("<p>\n*NODE\n1,0,0,0\nGRID,1\n")
+    listed = json.loads(ask(server, "api/project")[1])["files"]
+    assert {one["name"]: one["kinds"] for one in listed} == {name: kinds for name, (_, kinds) in files.items()}
+    _, text = ask(server, "api/file?name=part.stp", "POST", b" " * 72 + b"S      1\n")
+    assert "part.stp is an IGES file, which is not read here" in json.loads(text)["fault"]
+    assert not (tmp_path / "part.stp").exists()
+
+
 def test_names_cannot_be_taken_for_options(server, tmp_path):
     (tmp_path / "--help.x3p").write_text("")
     answer, text = ask(server, "api/scan?name=--help.x3p")

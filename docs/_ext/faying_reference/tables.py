@@ -13,7 +13,8 @@ from sphinx.util.docutils import SphinxDirective
 import faying
 from faying.contact.build import kinds
 from faying.contact.parameter import Parameter
-from faying.decks.programs import PROGRAMS
+from faying.decks.programs import CONDENSED, SOLVERS
+from faying.file_kinds import KINDS, Use
 from faying.loads.record import LoadCases, LoadIntervals
 from faying.materials import CATALOGUE
 from faying.measured.compare import ModalComparison
@@ -170,14 +171,21 @@ class Programs(Section):
         rows = [
             (
                 f"``{name}``",
-                ", ".join(one.meshes),
-                ", ".join(one.matrices),
-                "yes" if one.joints else "",
-                "yes" if one.condensed else "",
+                _suffixes(name, "mesh"),
+                _suffixes(name, "matrices"),
+                "yes" if name in SOLVERS else "",
+                "yes" if name in CONDENSED else "",
             )
-            for name, one in PROGRAMS.items()
+            for name in dict.fromkeys([*SOLVERS, *(kind.reader for kind in KINDS if kind.reader)])
         ]
         return table(head, rows)
+
+
+def _suffixes(reader: str, use: Use) -> str:
+    """Endings of the files that a module of `faying.decks` reads for a use."""
+    return ", ".join(
+        suffix for kind in KINDS if kind.reader == reader and use in kind.serves for suffix in kind.suffixes
+    )
 
 
 class Catalogue(Section):

@@ -4,20 +4,14 @@ import re
 from dataclasses import dataclass
 from io import BufferedIOBase
 from pathlib import Path
-from typing import Any, final
+from typing import Any, final, get_args
 
 from faying.errors import InputError
+from faying.file_kinds import STUDY, Use, kind_held, kind_of, taken
 from faying.files import write_atomically, write_text
 from faying.study.results_folder import results_folder
 
-# what a suffix tells of a file; the readers tell the rest
-KINDS = {
-    "geometry": (".step", ".stp"),
-    "mesh": (".inp", ".bdf", ".nas", ".dat", ".msh", ".cdb", ".vtk", ".vtu", ".unv", ".med"),
-    "scan": (".x3p", ".sur", ".xyz", ".asc", ".txt", ".opd", ".opdx", ".plux", ".sdf", ".al3d", ".tif", ".npy", ".nc"),
-    "test": (".uff", ".unv", ".csv"),
-    "study": (".toml",),
-}
+SHOWN: tuple[Use, ...] = ("geometry", "mesh", "scan", "test", "study")  # what the page offers files for
 NAME = re.compile(r"[\w()+\- ][\w.()+\- ]{0,118}", re.ASCII)
 LARGEST = 1 << 30  # bytes of an upload
 LARGEST_STUDY = 1 << 20  # bytes of a study's text
@@ -36,12 +30,12 @@ class Project:
     def at(cls, place: Path) -> "Project":
         """The project of a folder or of a study file. Raises InputError where it is neither, or has several studies."""
         if place.is_file():
-            if place.suffix != ".toml":
-                raise InputError(f"{place} is not a study; give a folder, or a study file that ends in .toml")
+            if kind_of(place) is not STUDY:
+                raise InputError(f"{place} is not a study; give a folder, or a study file")
             return cls(folder=place.resolve().parent, study_name=place.name)
         if not place.is_dir():
             raise InputError(f"no folder {place}; make it first, or give another")
-        studies = sorted(path.name for path in place.glob("*.toml") if _looks_like_a_study(path))
+        studies = sorted(path.name for path in place.glob("*.toml") if kind_held(path) is STUDY)
         if len(studies) > 1 and "study.toml" not in studies:
             raise InputError(
                 f"{place} has several studies: {', '.join(studies)}; name one, such as faying app {place / studies[0]}"
@@ -77,7 +71,7 @@ class Project:
 
     def listed(self) -> dict[str, Any]:
         """What lies in the folder, for the page."""
-        files = [{"name": path.name, "size": path.stat().st_size, "kinds": _kinds(path.name)} for path in self._files()]
+        files = [{"name": path.name, "size": path.stat().st_size, "kinds": _uses(path)} for path in self._files()]
         results = []
         if self.results.is_dir():
             results = [path.name for path in sorted(self.results.iterdir()) if path.is_file() and path.name[0] != "."]
@@ -91,12 +85,12 @@ class Project:
 
     def by_kind(self) -> dict[str, list[str]]:
         """The names of the files in the folder, by what they may be."""
-        names = [path.name for path in self._files()]
-        return {kind: [name for name in names if kind in _kinds(name)] for kind in KINDS}
+        uses = {path.name: _uses(path) for path in self._files()}
+        return {use: [name for name, some in uses.items() if use in some] for use in SHOWN}
 
     def _files(self) -> list[Path]:
         files = sorted(self.folder.iterdir())
-        return [path for path in files if path.is_file() and not path.name.startswith(".") and _kinds(path.name)]
+        return [path for path in files if path.is_file() and not path.name.startswith(".") and _uses(path)]
 
     def text(self) -> str | None:
         """The study's text; None where there is no study yet."""
@@ -121,9 +115,6 @@ class Project:
         path = self.file(name)
         if name == self.study_name and path.is_file() and not replace:
             raise InputError(f"{name} is there already; say that it is to be replaced, or give the file another name")
-        if not _kinds(name):
-            known = ", ".join(sorted({suffix for suffixes in KINDS.values() for suffix in suffixes}))
-            raise InputError(f"{name!r} ends in none of {known}")
 
         def write(temporary: Path) -> None:
             left = size
@@ -134,6 +125,7 @@ class Project:
                         raise InputError(f"{name!r} ended {left:,} bytes early; send it again")
                     file.write(block)
                     left -= len(block)
+            taken(temporary, *get_args(Use), name=name)
 
         return write_atomically(path, write)
 
@@ -156,11 +148,6 @@ def _inside(folder: Path, name: str) -> Path:
     return path
 
 
-def _kinds(name: str) -> list[str]:
-    lower = name.lower()
-    return [kind for kind, suffixes in KINDS.items() if lower.endswith(suffixes)]
-
-
-def _looks_like_a_study(path: Path) -> bool:
-    text = path.read_text(encoding="utf-8", errors="replace")
-    return re.search(r"^\s*\[geometry\]", text, re.MULTILINE) is not None
+def _uses(path: Path) -> list[str]:
+    kind = kind_of(path)
+    return [] if kind is None else [use for use in kind.serves if use in SHOWN]

@@ -7,6 +7,7 @@ import click
 
 from faying.cli.options import FILE, PATH
 from faying.errors import InputError
+from faying.file_kinds import RESULT, kind_of
 from faying.files import write_text
 
 
@@ -44,7 +45,7 @@ def _for_paraview(file: Path, vtu: Path, *, page_too: bool) -> None:
     """Write a result for ParaView."""
     from faying.result import Result
 
-    if file.suffix.lower() != ".nc":
+    if kind_of(file) is not RESULT:
         raise InputError(f"--vtu writes a result (.nc) for ParaView; {file.name} is none. Run the study first")
     if page_too:
         raise InputError("--vtu writes no page; leave out --out and --unit")

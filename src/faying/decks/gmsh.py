@@ -1,4 +1,4 @@
-"""Gmsh's mesh files (.msh), 2.2 and 4.1, text and binary: physical volumes are parts, physical surfaces are faces.
+"""Gmsh's mesh files, 2.0 to 2.2 and 4.1, text and binary: physical volumes are parts, physical surfaces are faces.
 
 Formats after the Gmsh reference manual, section "Gmsh mesh file formats".
 """
@@ -13,6 +13,7 @@ from faying.errors import ReadError
 from faying.typing import Array, Index
 
 _KINDS = {4: ("tet4", 4), 5: ("hex8", 8), 6: ("wedge6", 6), 11: ("tet10", 10), 17: ("hex20", 20), 18: ("wedge15", 15)}
+_EARLIER = (b"2", b"2.0", b"2.1", b"2.2")  # their sections and lines of elements are the same
 _FACES = {2: 3, 3: 4, 9: 6, 16: 8}
 _PASSED = {1: 2, 8: 3, 15: 1}
 _UNKNOWN = {
@@ -89,9 +90,11 @@ class _Bytes:
         return np.asarray(self._take("f8", count), dtype=float)
 
 
-def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
-    """Version, and the sections that are read; text and binary files have the same ones."""
-    data = path.read_bytes().replace(b"\r\n", b"\n") if _is_text(path) else path.read_bytes()
+def _sections(path: Path) -> tuple[bool, dict[str, _Words | _Bytes]]:
+    """Whether the format is earlier than 4, and the sections that are read, which text and binary files share."""
+    data = path.read_bytes()
+    if data[:200].split(b"$MeshFormat")[-1].split()[1:2] != [b"1"]:
+        data = data.replace(b"\r\n", b"\n")
     if b"$MeshFormat" not in data[:200]:
         raise ReadError(f"{path} is not a Gmsh mesh file (no $MeshFormat)")
     head, _, rest = data.split(b"$MeshFormat", 1)[1].lstrip().partition(b"\n")
@@ -99,7 +102,7 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
     after = rest.partition(b"$")[0].strip() if words[1:2] == [b"0"] else b""
     if after:
         raise ReadError(f"{path}: {after[:40].decode(errors='replace')!r} is in $MeshFormat, which has one line")
-    if len(words) != 3 or words[0] not in (b"2.2", b"4.1") or words[1] not in (b"0", b"1") or not words[2].isdigit():
+    if len(words) != 3 or words[0] not in (*_EARLIER, b"4.1") or words[1] not in (b"0", b"1") or not words[2].isdigit():
         kind = head.decode("utf-8", errors="replace")[:40]
         raise ReadError(f"{path} has format {kind!r}; save it in 4.1 or 2.2 (Mesh.MshFileVersion)")
     in_bytes = words[1] == b"1"
@@ -122,7 +125,7 @@ def _sections(path: Path) -> tuple[str, dict[str, _Words | _Bytes]]:
         piece = data[start + len(begin) : stop]
         binary = in_bytes and name != "PhysicalNames"
         out[name] = _Bytes(piece, name, order) if binary else _Words(piece, name)
-    return words[0].decode(), out
+    return words[0] in _EARLIER, out
 
 
 def _check_sections(data: bytes, path: Path) -> None:
@@ -142,11 +145,6 @@ def _check_sections(data: bytes, path: Path) -> None:
                 f"{path}, line {number}: {shown!r} is in no section from $NAME to $EndNAME; is a line missing before "
                 "it?"
             )
-
-
-def _is_text(path: Path) -> bool:
-    with path.open("rb") as file:
-        return file.read(200).split(b"$MeshFormat")[-1].split()[1:2] != [b"1"]
 
 
 def _names(words: _Words | _Bytes | None) -> dict[tuple[int, int], str]:
@@ -170,11 +168,11 @@ def _names(words: _Words | _Bytes | None) -> dict[tuple[int, int], str]:
 
 def read(path: Path) -> RawMesh:
     """Read a .msh file, text or binary. Raises ReadError for other versions, and elements it does not know."""
-    version, sections = _sections(path)
+    early, sections = _sections(path)
     names = _names(sections.get("PhysicalNames"))
     nodes, elements = sections["Nodes"], sections["Elements"]
     with understood(f"{path} has something that is not a number"):
-        if version == "2.2":
+        if early:
             numbers, points = _nodes_22(nodes)
             rows = _once(_elements_22(elements))
         else:

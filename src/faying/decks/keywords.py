@@ -33,46 +33,59 @@ class Block:
         return [word for row in self.rows() for word in row if word]
 
 
-def blocks(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = None) -> Iterator[Block]:
+def blocks(path: Path) -> Iterator[Block]:
     """Keyword blocks of a file and of the files it includes."""
+    current: Block | None = None
+    for where, line in _lines(path):
+        if isinstance(line, Block):
+            if current is not None:
+                yield current
+            current = line
+        elif current is not None:
+            current.lines.append(line)
+        elif _is_data(line):
+            raise ReadError(f"{where}: data before the first keyword; is this an Abaqus input file?")
+    if current is not None:
+        yield current
+
+
+def _lines(
+    path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = None
+) -> Iterator[tuple[str, Block | str]]:
+    """Where each line stands, and the line: a keyword as a block without data, or data.
+
+    The lines of a file that *INCLUDE or INPUT= names stand in the place of that name; comments are left out.
+    """
     count = [0] if count is None else count
     check_included(path, seen, count)
-    current: Block | None = None
     lines = iter(enumerate(read_text(path, "input file").splitlines(), 1))
-    for number, given in lines:
-        line = given.lstrip() if given.lstrip().startswith("*") else given  # blanks may stand before a keyword
-        if line.startswith("**") or not line.strip():
+    for number, line in lines:
+        where = f"{path.name}, line {number}"
+        if not line.strip() or line.lstrip().startswith("**"):
             continue
-        if not line.startswith("*"):
-            if current is not None:
-                current.lines.append(line)
-            elif _is_data(line):
-                raise ReadError(f"{path}, line {number}: data before the first keyword; is this an Abaqus input file?")
+        if not line.lstrip().startswith("*"):  # blanks may stand before a keyword
+            yield where, line
             continue
         while line.rstrip().endswith(","):
             more = next(lines, None)
             if more is None:
-                raise ReadError(f"{path}, line {number}: the file ends within a keyword; is it complete?")
+                raise ReadError(f"{where}: the file ends within a keyword; is it complete?")
             line = line.rstrip() + more[1]
-        if current is not None:
-            yield current
-            current = None
-        name, *rest = line[1:].split(",")
-        pairs = (part.partition("=") for part in rest if part.strip())
-        options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-        keyword = re.sub(r"\s+", " ", name.strip().upper())
-        where = f"{path.name}, line {number}"
-        if keyword == "INCLUDE":
-            if "INPUT" not in options:
-                raise ReadError(f"{path}, line {number}: *INCLUDE without INPUT=file")
-            yield from blocks(path.parent / options["INPUT"], (*seen, path.resolve()), count)
-            continue
-        current = Block(keyword, options, [], where)
-        if keyword in DATA and "INPUT" in options:
-            data = read_text(path.parent / options["INPUT"], "data").splitlines()
-            current.lines.extend(line for line in data if line.strip() and not line.lstrip().startswith("**"))
-    if current is not None:
-        yield current
+        block = _keyword(line.lstrip(), where)
+        if block.keyword != "INCLUDE":
+            yield where, block
+        elif "INPUT" not in block.options:
+            raise ReadError(f"{where}: *INCLUDE without INPUT=file")
+        if block.keyword in {"INCLUDE", *DATA} and "INPUT" in block.options:
+            yield from _lines(path.parent / block.options["INPUT"], (*seen, path.resolve()), count)
+
+
+def _keyword(line: str, where: str) -> Block:
+    """A keyword with its parameters, whose values may stand in quotes with commas in them."""
+    name, *rest = re.findall(r'(?:"[^"]*"|[^,])+', line[1:]) or [""]
+    pairs = (part.partition("=") for part in rest if part.strip())
+    options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
+    return Block(re.sub(r"\s+", " ", name.strip().upper()), options, [], where)
 
 
 def _is_data(line: str) -> bool:

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from faying import units
-from faying.decks.programs import MATRICES, reader_of
+from faying.decks.programs import reader_of
 from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_dofs, read_text, room, whole
 from faying.errors import InputError, ReadError
 from faying.fe.mesh import Mesh
+from faying.file_kinds import MARKET, SPARSE, kind_of
 from faying.misuse import checked_call
 from faying.typing import Array, Index
 
@@ -50,14 +51,14 @@ def read_matrices(
             f'{file.name} does not state its units; give them, for example stiffness_unit = "N/mm", mass_unit = "t"'
         )
     scales = units.scale(stiffness_unit, "N/m", name="stiffness_unit"), units.scale(mass_unit, "kg", name="mass_unit")
-    if file.suffix.lower() == ".mtx":
+    if kind_of(file) is MARKET:
         if mass is None or dofs is None:
             raise InputError(
                 f"{file.name}: Matrix Market holds one matrix and no nodes; name the mass and the dofs too"
             )
         K, M, table = _market(file), _market(Path(mass)), read_dofs(Path(dofs))
     else:
-        K, M, table = reader_of(file, MATRICES, (".mtx",)).read_matrices(file, names)
+        K, M, table = reader_of(file, "matrices").read_matrices(file, names)
     _check(file.name, K, M, table)
     _check_mass(file.name, M, table)
     return (K * scales[0]).tocsr(), (M * scales[1]).tocsr(), table
@@ -90,18 +91,20 @@ def read_pair(
     Without a list, each unknown counts as direction 1 of a node of its own. Raises what `read_matrices` raises.
     """
     file = Path(stiffness)
-    kinds = {".mtx": _market, ".npz": _npz}
-    if file.suffix.lower() not in kinds:
+    readers = {MARKET: _market, SPARSE: _npz}
+    kind = kind_of(file)
+    if kind not in readers:
         if mass is not None:
             raise InputError(f"{file.name} brings its mass with it; leave out {mass}")
         return read_matrices(file, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
     if mass is None:
         raise InputError(f"{file.name} holds the stiffness alone; name the mass too, .mtx or .npz")
     other = Path(mass)
-    if other.suffix.lower() not in kinds:
+    kind_of_mass = kind_of(other)
+    if kind_of_mass not in readers:
         raise ReadError(f"{other}: the mass should be .mtx or .npz")
-    K = kinds[file.suffix.lower()](file) * units.scale(stiffness_unit, "N/m", name="stiffness unit")
-    M = kinds[other.suffix.lower()](other) * units.scale(mass_unit, "kg", name="mass unit")
+    K = readers[kind](file) * units.scale(stiffness_unit, "N/m", name="stiffness unit")
+    M = readers[kind_of_mass](other) * units.scale(mass_unit, "kg", name="mass unit")
     table = np.column_stack([np.arange(1, K.shape[0] + 1), np.ones(K.shape[0], dtype=np.int64)])
     _check(file.name, K, M, table)
     return K.tocsr(), M.tocsr(), table

@@ -3,25 +3,24 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from faying import units
 from faying.decks.conforming import among, bodies, check_apart, keys_of
-from faying.decks.programs import MESHES, reader_of
+from faying.decks.programs import reader_of
 from faying.decks.raw import Pretension, RawMesh, joined, understood
 from faying.errors import InputError, ReadError
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.mesh import Mesh
 from faying.fe.sides import Blocks, nodes_of, side_key, skin
 from faying.fe.solids import least_jacobian
+from faying.file_kinds import STEP, taken
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.text import few
 from faying.typing import Array, Index
 
-STEP = (".step", ".stp")
 SMALLEST, LARGEST = 1e-3, 100.0  # sizes of a bolted structure [m] beyond which the unit is doubted
 FEW_NODES, MAX_LOST = 10, 0.1  # nodes of no element, and their share, beyond which a file may be cut short
 CLOSE = 1e-7  # of the part's size: nodes nearer than this coincide
@@ -39,9 +38,9 @@ def read_mesh(
 ) -> Mesh:
     """Mesh a STEP file, or read a mesh file.
 
-    A STEP file (.step, .stp) is meshed as a study meshes it, with second-order tetrahedra; `size` is needed then. Its
-    parts and faces have the names that the CAD program gave them. Mesh files are Abaqus or CalculiX .inp, Nastran .bdf,
-    Gmsh .msh, MAPDL .cdb, VTK .vtk or .vtu; `unit` is needed then.
+    A STEP file is meshed as a study meshes it, with second-order tetrahedra; `size` is needed then. Its parts and faces
+    have the names that the CAD program gave them. Mesh files are those of Abaqus or CalculiX, Nastran, Gmsh and MAPDL,
+    universal files, VTK and MED; `unit` is needed then. What the file holds tells its kind, whatever its name ends in.
 
     Faces are the file's node sets, surfaces and face elements, turned outwards; a set that lies on several parts gives
     PART.SET for each. Parts that share nodes on named faces get nodes of their own there; parts that share nodes where
@@ -67,17 +66,16 @@ def read_mesh(
     file = Path(path)
     if not file.is_file():
         raise ReadError(f"no file {file}")
-    if file.suffix.lower() in STEP:
+    if taken(file, "geometry", "mesh") is STEP:
         wrong = [name for name, value in (("unit", unit), ("parts", parts)) if value is not None]
         return _meshed(file, size, face_size, cache, wrong)
     wrong = [name for name, value in (("size", size), ("face_size", face_size)) if value is not None]
     if wrong:
         raise InputError(f"{file.name} is a mesh already, and {wrong[0]} is for STEP files; leave it out")
-    module = reader_of(file, MESHES, STEP)
     if unit is None:
         raise InputError(f'{file.name} does not state the unit of its coordinates; give it, for example unit = "mm"')
     scale = units.scale(unit, "m", name="unit of the mesh")
-    raw = _read(module, file)
+    raw = _read(file)
     return _Builder(raw, file.name, unit, scale).mesh(parts)
 
 
@@ -107,8 +105,9 @@ def _meshed(
     )
 
 
-def _read(module: Any, file: Path) -> RawMesh:
+def _read(file: Path) -> RawMesh:
     """What a format's reader finds; a word where it expects a number is the file's fault, not a crash."""
+    module = reader_of(file, "mesh")
     with understood(f"{file} has something that Faying does not understand"):
         raw: RawMesh = module.read(file)
     if not len(raw.numbers):
@@ -126,7 +125,7 @@ def read_pretensions(path: str | Path, mesh: Mesh) -> list[tuple[Pretension, tup
         mesh: as `read_mesh` gives it.
     """
     file = Path(path)
-    raw = _read(reader_of(file, MESHES), file)
+    raw = _read(file)
     numbers = {part: mesh.numbers[mesh.part_nodes(part)] for part in mesh.parts}
     return [
         (
@@ -144,7 +143,7 @@ def read_pretensions(path: str | Path, mesh: Mesh) -> list[tuple[Pretension, tup
 def last_element(path: str | Path) -> int:
     """Greatest number of a solid element in a mesh file, for whoever adds elements to it."""
     file = Path(path)
-    raw = _read(reader_of(file, MESHES), file)
+    raw = _read(file)
     return max((int(numbers.max()) for numbers, _ in raw.elements.values() if len(numbers)), default=0)
 
 

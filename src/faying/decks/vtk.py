@@ -14,6 +14,7 @@ import numpy as np
 from faying.decks.raw import RawMesh, index
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
+from faying.file_kinds import MED, VTU, taken
 from faying.typing import Array, Index, Mask
 
 _KINDS = {
@@ -31,19 +32,19 @@ _ARRAYS = ("part", "body", "region", "domain", "material", "gmsh:physical", "Cel
 
 def read(path: Path) -> RawMesh:
     """Read a VTK or MED file. Raises InputError where meshio is not installed, ReadError for what it cannot read."""
+    given = taken(path, "mesh")
+    kind = "MED" if given is MED else "VTK"
     try:
         import meshio
     except ImportError:
-        kind = path.suffix[1:].upper()
         raise InputError(
             f"{path.name}: {kind} files are read by meshio; add --extra vtk to uv run, or pip install meshio"
         ) from None
     # meshio 5.3.5 knows the name of this kind in every format, but not its dimension
     meshio._mesh.topological_dimension.setdefault("wedge15", 3)
     try:
-        found = meshio.read(path)
+        found = meshio.read(path, file_format="vtu" if given is VTU else kind.lower())
     except (Exception, SystemExit) as fault:  # meshio raises many kinds
-        kind = "MED" if path.suffix.lower() == ".med" else "VTK"
         raise ReadError(f"{path} cannot be read as {kind} ({type(fault).__name__}: {fault}); save it again") from None
     points = np.asarray(found.points, dtype=float)
     if points.ndim != 2 or points.shape[1] != 3:

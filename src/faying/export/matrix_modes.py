@@ -8,6 +8,7 @@ from faying.checks import whole
 from faying.decks.matrices import total_mass
 from faying.errors import InputError
 from faying.export.assembled import Assembled
+from faying.file_kinds import STUDY, kind_of
 from faying.joint.modal import MAX_MODES
 from faying.misuse import checked_call
 from faying.numerics.memory import check_modes
@@ -93,7 +94,7 @@ def matrix_modes(
         NotConverged: The iteration stops short.
     """
     count = whole(count, "count", least=1, greatest=MAX_MODES)
-    if isinstance(stiffness, Study) or Path(stiffness).suffix == ".toml":
+    if isinstance(stiffness, Study) or kind_of(Path(stiffness)) is STUDY:
         if mass is not None:
             raise InputError("a study has a mass of its own; leave mass out")
         given = Assembled.of_study(Study.read(stiffness))

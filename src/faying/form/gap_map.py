@@ -8,6 +8,7 @@ import numpy as np
 
 from faying.columns import Wanted, read_list
 from faying.errors import InputError
+from faying.file_kinds import kind_of
 from faying.form.face_axes import FaceAxes
 from faying.form.flatness import minimum_zone
 from faying.form.lonely import refuse_lonely
@@ -15,7 +16,6 @@ from faying.misuse import checked_call, numbers
 from faying.style import Summary
 from faying.typing import Array
 
-LISTS = (".csv", ".txt", ".dat", ".xyz", ".asc")  # endings of lists of points; all else is a scan
 MAX_PLACES = 150  # places kept along each side of a scan: roughness is the law's, and is averaged out of the form
 
 
@@ -173,12 +173,13 @@ def _xy(unit: str | None) -> tuple[Wanted, Wanted]:
 def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None = None) -> tuple[Array, Array]:
     """Read measured form: places (n, 2) [m] and heights, or gaps, (n,) [m].
 
-    A file that ends in one of `LISTS` holds three columns x, y, z, anywhere; a heading may name them in any order and
+    A text of numbers holds three columns x, y, z, anywhere; a heading may name them in any order and
     state their units, else both are given. Any other is a scan, whose spikes are left out and which is averaged over
     cells to at most `MAX_PLACES` places along each side; units are given where it states none. Raises InputError and
     ReadError.
     """
-    if path.suffix.lower() in LISTS:
+    kind = kind_of(path, "numbers")
+    if kind is not None and "numbers" in kind.serves:
         z = Wanted(names=("z", "height", "heights", "gap"), unit="m", given=z_unit, key="z_unit")
         table = read_list(path, (*_xy(xy_unit), z), "a list of measured points has the columns x, y, z")
         refuse_lonely(table[:, :2], table[:, 2], path.name)

@@ -8,13 +8,13 @@ from typing import Any, TypeVar
 
 from faying.apart import Died, apart
 from faying.errors import InputError, ReadError
+from faying.file_kinds import STEP, kind_held
 from faying.geometry.products import Products, leaves, named_by_product, read_products
 from faying.notes import Note
 
 T = TypeVar("T")
 _SOLID = re.compile(r"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\s*\(")
 
-STEP = (".step", ".stp")  # suffixes of STEP files, in small letters
 NO_NAMES = ("", "NONE")  # what exporters write for want of a name
 # what OpenCASCADE links against; wheels do not bring them
 LIBRARIES = {
@@ -60,10 +60,10 @@ def check_head(path: Path) -> None:
     """Raise ReadError where there is no such file, or it is not a STEP file."""
     if not path.is_file():
         raise ReadError(f"no file {path}; geometry.step names a STEP file relative to the study")
-    with path.open("rb") as file:
-        head = file.read(64)
-    if b"ISO-10303-21" not in head:
-        raise ReadError(f"{path} is not a STEP file (it does not begin with ISO-10303-21); export STEP AP214 or AP242")
+    kind = kind_held(path)
+    if kind is not STEP:
+        why = "it does not begin with ISO-10303-21" if kind is None else f"it is {kind.says}"
+        raise ReadError(f"{path} is not a STEP file ({why}); export STEP AP214 or AP242")
 
 
 def read_step(path: Path) -> Any:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from faying.decks.meshfile import read_mesh
 from faying.errors import InputError
-from faying.geometry.cad import STEP
+from faying.file_kinds import STEP, kind_of
 from faying.geometry.face_facts import GeometryFacts, read_facts
 from faying.geometry.mesh_facts import mesh_facts
 from faying.misuse import checked_call
@@ -26,7 +26,7 @@ def faces(geometry: str | Path, *, unit: str | None = None) -> GeometryFacts:
         ReadError: The file cannot be read.
     """
     path = Path(geometry)
-    if path.suffix.lower() not in STEP:
+    if kind_of(path) is not STEP:
         return mesh_facts(read_mesh(path, unit=unit))
     if unit is not None:
         raise InputError("a unit is for mesh files; a STEP file states its unit, so leave it out")

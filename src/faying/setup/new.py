@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from faying.errors import InputError
+from faying.file_kinds import STEP, kind_of
 from faying.files import together, write_atomically, write_text
-from faying.geometry.cad import STEP
 from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
 from faying.misuse import checked_call
@@ -138,7 +138,7 @@ def find(step: Path, unit: str | None = None) -> Proposal:
 
     Raises ReadError and InputError as `propose` and `propose_mesh`.
     """
-    if step.suffix.lower() in STEP:
+    if kind_of(step) is STEP:
         return propose(faces(step, unit=unit), step)
     return propose_mesh(step, unit)
 

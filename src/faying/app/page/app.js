@@ -340,7 +340,7 @@ function steps() {
   const project = state.project;
   if (!project) return;
   const of = (kind) => project.files.filter((file) => file.kinds.includes(kind)).map((file) => file.name);
-  const text = project.text, scans = of("scan").filter((name) => !name.endsWith(".nc")), shapes = [...of("geometry"), ...of("mesh")];
+  const text = project.text, scans = of("scan"), shapes = [...of("geometry"), ...of("mesh")];
   const known = text !== null && /^\s*(D|G|C)\s*=/m.test(text), surface = scans.length > 0 || known;
   const faults = state.faults ?? 0, ready = text !== null && faults === 0, ran = project.results.includes("result.nc");
   step("surface", scans.length ? scans.join(", ") : known ? "D and G, or a law's own numbers, stand in the study."

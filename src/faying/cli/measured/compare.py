@@ -9,6 +9,7 @@ from faying import units
 from faying.cli.measured.two_runs import show_two_runs
 from faying.cli.options import PATH, show
 from faying.errors import InputError
+from faying.file_kinds import RESULT, kind_of
 from faying.files import together
 from faying.output.terminal import folded
 from faying.units import load_text
@@ -67,9 +68,9 @@ def command(
     """Compare RESULT (result.nc of `faying run`) with the hammer test in OTHER, or with another result.
 
     A test is a universal file. Its mode shapes are taken where it holds some; otherwise they are identified from its
-    FRFs. Another result ends in .nc: modes are paired by their shapes, at each preload that both results have.
+    FRFs. For another result, modes are paired by their shapes, at each preload that both results have.
     """
-    if other.suffix.lower() == ".nc":
+    if kind_of(other) is RESULT:
         _check_no_test(click.get_current_context())
         show_two_runs((result, other), load, out, as_json=as_json)
         return

@@ -9,6 +9,7 @@ import click
 from faying import units
 from faying.cli.options import FILE, PATH, frequency_band, quantity
 from faying.errors import InputError
+from faying.file_kinds import taken
 from faying.text import json_text
 
 
@@ -60,7 +61,7 @@ def decay(record: Path, options: dict[str, Any]) -> Any:
     from faying.measured.uff import read_uff
 
     band, cycles = frequency_band(options["band"]), options["cycles"]
-    if record.suffix.lower() == ".csv":
+    if "numbers" in taken(record, "test", "numbers").serves:
         if options["impulse"] is not None or options["function"] is not None:
             raise InputError("--impulse and --function are for the FRF of a universal file; a record in time has none")
         signal, rate, motion = read_record(record)

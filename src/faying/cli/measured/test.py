@@ -9,9 +9,8 @@ import click
 from faying import units
 from faying.cli.options import FILE, PATH, frequency_band
 from faying.errors import InputError
+from faying.file_kinds import taken
 from faying.text import in_columns, json_text
-
-TEXT = (".txt", ".csv", ".dat", ".asc")
 
 
 @click.command()
@@ -90,7 +89,7 @@ def read_frf(
     from faying.measured.text import read_frf_text
     from faying.measured.uff import read_uff
 
-    if all(file.suffix.lower() in TEXT for file in files):
+    if all("numbers" in taken(file, "test", "numbers").serves for file in files):
         if quantity is None:
             raise InputError(
                 "text files do not state what was measured; give --quantity receptance, mobility or accelerance"

@@ -1,6 +1,5 @@
 """Instrument files in: X3P and text in the core, everything else through SurfaceTopography when it is installed."""
 
-import zipfile
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import numpy as np
 from faying.checks import instance, several
 from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
+from faying.file_kinds import X3P, kind_held, kind_of, taken
 from faying.files import end_of
 from faying.surface.files.text import TextLayout
 from faying.surface.heights import sides_of, steps_of
@@ -84,14 +84,14 @@ def read_scan(
         if unit is not None:
             scale(instance(unit, str, name, 'give the name of a unit as text, "mm" say'), "m", name=name)
     lateral = Lateral.of(size, spacing)
-    head = _head(file)
-    if head[:2] == b"PK" and _is_x3p(file):
+    _check_there(file)
+    if kind_held(file) is not None:  # what is not known may be of an instrument that SurfaceTopography knows
+        taken(file, "scan", "numbers")
+    if kind_of(file) is X3P:
         from faying.surface.files import x3p
 
         _no_units(file, xy_unit, z_unit)
         scan: Scan | Profile = x3p.read(file)
-    elif file.suffix.lower() == ".x3p":
-        raise ReadError(f"{file}: not an X3P (zip) archive; the file is cut off or damaged, export it again")
     else:
         scan = _text_or_other(file, xy_unit, z_unit, lateral)
     scan = without_sentinels(_resized(scan, lateral))
@@ -99,7 +99,8 @@ def read_scan(
     return replace(scan, notes=(*scan.notes, *end_of(file)))
 
 
-def _head(file: Path) -> bytes:
+def _check_there(file: Path) -> None:
+    """Raise ReadError where there is no such file, or nothing in it."""
     if not file.exists():
         raise ReadError(f"{file}: no such file; check the path")
     if not file.is_file():
@@ -111,18 +112,6 @@ def _head(file: Path) -> bytes:
         raise ReadError(f"{file}: cannot be opened ({fault.strerror}); check the permissions") from None
     if not head.strip(b"\0 \r\n\t"):
         raise ReadError(f"{file}: the file is empty; export it again")
-    return head
-
-
-def _is_x3p(file: Path) -> bool:
-    """Whether a zip archive is an X3P: it holds main.xml, or its name says so. Other formats are zip archives too."""
-    if file.suffix.lower() == ".x3p":
-        return True
-    try:
-        with zipfile.ZipFile(file) as archive:
-            return any(name.rpartition("/")[2] == "main.xml" for name in archive.namelist())
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError):
-        return False
 
 
 def _no_units(file: Path, xy_unit: str | None, z_unit: str | None) -> None:
@@ -150,8 +139,6 @@ def _scales(
     file: Path, layout: TextLayout, xy_unit: str | None, z_unit: str | None, lateral: Lateral
 ) -> tuple[float, float, float]:
     """Metres per unit of x, y and z of a text file."""
-    from faying.units import scale
-
     if layout.units is not None:
         x, y, z = layout.units
         return x, y, z

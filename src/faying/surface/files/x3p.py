@@ -119,7 +119,7 @@ def read(path: Path) -> Scan | Profile:
         archive = zipfile.ZipFile(path)
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as fault:
         raise ReadError(
-            f"{path}: not a readable X3P (zip) archive ({fault}); the file is cut off or damaged"
+            f"{path}: not an X3P (zip) archive that can be read ({fault}); the file is cut off or damaged"
         ) from fault
     with archive:
         xml = _member(archive, "main.xml", LARGEST_XML, path)
