@@ -25,10 +25,10 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
     A link is followed, and a device or a pipe is written to. Raises InputError where the folder does not exist or the
     file cannot be written.
     """
-    path = path.resolve() if path.is_symlink() else path
+    device = path.exists() and not path.is_file() and not path.is_dir()  # /dev/null, a pipe: it stays what it is
+    path = path.resolve() if path.is_symlink() and not device else path
     if not path.parent.is_dir():
         raise InputError(f"no folder {path.parent} to write {path.name} in; make it first")
-    device = path.exists() and not path.is_file() and not path.is_dir()  # /dev/null, a pipe: it stays what it is
     where = Path(tempfile.gettempdir()) if device else path.parent
     temporary = where / f".{path.name}.{secrets.token_hex(4)}.part"
     try:
@@ -210,7 +210,10 @@ def locked(folder: Path, target: Path, remedy: str) -> IO[str]:
     try:
         while True:
             folder.mkdir(exist_ok=True)
-            file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+", encoding="utf-8")
+            try:
+                file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+", encoding="utf-8")
+            except FileNotFoundError:
+                continue  # whoever held the folder has just removed it
             if not _lock(file):
                 holder = file.read() or "another process"
                 file.close()
@@ -257,6 +260,8 @@ def release(folder: Path, lock: IO[str]) -> None:
         lock.close()
     shutil.rmtree(folder, ignore_errors=True)
     lock.close()
+    with suppress(OSError):  # a disk of another host shows an open file until it is closed
+        folder.rmdir()
 
 
 @contextmanager

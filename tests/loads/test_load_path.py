@@ -12,7 +12,7 @@ from faying.fe.sides import sides_on
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.load_path import LoadPaths
+from faying.joint.load_path import Cut, LoadPaths
 from faying.joint.structure import Structure
 from faying.loads.acting import acting, nothing
 from faying.loads.answers import bolt_changes, cut_loads
@@ -239,6 +239,23 @@ def test_one_bolt_bears_a_torque_by_friction_round_it():
     arm = np.linalg.norm(found.positions[:, :2] - np.array(point[:2]), axis=1)
     mean = (found.areas * found.pressure[0]) @ arm / (found.areas @ found.pressure[0])
     assert found.transverse_load[0, 0] == pytest.approx(2.0 / mean, rel=1e-3)
+
+
+def test_a_joint_in_the_plane_of_a_seat_is_not_clamped():
+    """A bracket that stands on the plate where the bolt's head lies: rounding of the depth decides nothing."""
+    line = LoadPaths.of(flange()).lines[0]
+    for depth in (0.0, 1e-17, line.length, line.length - 1e-17):
+        place = (line.seats[0] + depth * line.axis + np.array([1 * MM, 0, 0]))[None]
+        assert not line.passes(place, line.axis[None])
+
+
+def test_cuts_of_one_bolt_are_crossed_one_after_the_other():
+    """A shim between two parts that meet round it as well: both cuts share a joint, and no shear counts twice."""
+    cut = {"depth": 0.01, "area": 1e-4}
+    first = Cut(joints=(0, 1), parts=("a", "b"), **cut)
+    second = Cut(joints=(1, 2), parts=("b", "c"), **cut)
+    paths = LoadPaths(lines=(), owner=(), cuts=((first, second), (first, second)))
+    assert sorted(paths.interfaces) == [((0, 1), (0, 1)), ((1, 2), (0, 1))]
 
 
 def test_a_joint_along_the_axis_is_not_clamped():

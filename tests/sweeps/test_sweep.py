@@ -144,6 +144,7 @@ def test_two_sweeps_into_one_file(plan, tmp_path, monkeypatch):
 
 def test_leftovers_of_another_sweep_are_refused(plan, tmp_path):
     (tmp_path / "out.nc.part").mkdir()
+    (tmp_path / "out.nc.part" / "chunk-0.npz").write_bytes(b"work")  # an empty folder has nothing to lose
     with pytest.raises(faying.InputError, match=r"out.nc.part is what another sweep has left"):
         sweep(plan, axes(), tmp_path / "out.nc")
 

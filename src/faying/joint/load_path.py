@@ -21,6 +21,7 @@ from faying.typing import Array, Index, Mask
 Placed = BoltPlace | FittedSolidBolt | SolidPlace
 
 REACH = 1.5  # outer diameters of the seat: the widest cone of VDI 2230 is about as wide under usual clamped lengths
+LEVEL = 1e-3  # of the length from seat to seat: a joint nearer to a seat lies in its plane, beside the bolt
 FACING = 0.5  # cosine between axis and normal: a steeper joint slides under the bolt's force, and is not clamped by it
 ROUND = 0.03  # of the area of a ring between its least and greatest radius: a face that differs by more is none
 
@@ -64,8 +65,8 @@ class BoltLine:
 
     def passes(self, positions: Array, normals: Array) -> Mask:
         """Which places (q, 3) [m] of a joint with these normals (q, 3) the bolt passes."""
-        depth = self.depth(positions)
-        between = (depth > 0) & (depth < self.length)
+        depth, room = self.depth(positions), LEVEL * self.length
+        between = (depth > room) & (depth < self.length - room)
         return np.asarray(between & (self.distance(positions) <= self.reach) & (np.abs(normals @ self.axis) > FACING))
 
 
@@ -130,17 +131,18 @@ class LoadPaths:
     @property
     def interfaces(self) -> tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]:
         """Joints that cuts have in common, and the bolts that hold them: what a load has to cross together."""
-        groups: list[set[int]] = []
-        for cut in (cut for cuts in self.cuts for cut in cuts):
-            met = [group for group in groups if group.intersection(cut.joints)]
-            groups = [group for group in groups if group not in met] + [set(cut.joints).union(*met)]
-        return tuple(
-            (
-                tuple(sorted(group)),
-                tuple(k for k, cuts in enumerate(self.cuts) if any(group.intersection(cut.joints) for cut in cuts)),
-            )
-            for group in groups
-        )
+        groups: list[tuple[set[int], set[int]]] = []
+        for k, cuts in enumerate(self.cuts):
+            for cut in cuts:
+                joints, bolts, apart = set(cut.joints), {k}, []
+                for group in sorted(groups, key=lambda one: -len(one[0].intersection(cut.joints))):
+                    # a load crosses two cuts of one bolt one after the other, even where they share a joint
+                    if group[0].intersection(cut.joints) and not group[1] & bolts:
+                        joints, bolts = joints | group[0], bolts | group[1]
+                    else:
+                        apart.append(group)
+                groups = [*apart, (joints, bolts)]
+        return tuple((tuple(sorted(joints)), tuple(sorted(bolts))) for joints, bolts in groups)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -73,13 +73,15 @@ def acting(structure: BoltedStructure, loads: Sequence[Load]) -> dict[str, Actin
             structure against what is left over of a load.
     """
     out: dict[str, Acting] = {}
+    sizes: dict[str, float] = {}  # of all forces that go into a case [N], which may cancel out
     for load in loads:
         total = _own(structure, load)
+        size = float(np.linalg.norm(total.force))
         for name, factor in load.combine.items():
-            total = total + out[name].times(factor)
-        out[load.name] = total
+            total, size = total + out[name].times(factor), size + abs(factor) * sizes[name]
+        out[load.name], sizes[load.name] = total, size
     for name, found in out.items():
-        check_supported(structure, name, found.force)
+        check_supported(structure, name, found.force, sizes[name])
     return out
 
 
@@ -199,12 +201,15 @@ def _move(structure: BoltedStructure, one: Displacement, moved: Array, what: str
         moved[nodes, axis] = size
 
 
-def check_supported(structure: BoltedStructure, name: str, force: Array) -> None:
-    """Raise InputError where nothing holds a structure against what is left over of a load [N] (unknowns,)."""
+def check_supported(structure: BoltedStructure, name: str, force: Array, scale: float) -> None:
+    """Raise InputError where nothing holds a structure against what is left over of a load [N] (unknowns,).
+
+    scale: size of the forces that went into it [N], to which rounding is.
+    """
     if not structure.rigid.size:
         return
     rigid = np.linalg.qr(structure.rigid)[0]
-    scale, net = float(np.linalg.norm(force)), float(np.linalg.norm(rigid.T @ force))
+    net = float(np.linalg.norm(rigid.T @ force))
     if net > BALANCED * scale:
         total = force.reshape(-1, 3).sum(axis=0)
         total = np.where(np.abs(total) > BALANCED * scale, total, 0.0)

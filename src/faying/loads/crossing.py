@@ -99,7 +99,7 @@ def transverse_loads(
     out = np.zeros(len(ends))
     for joints, bolts in paths.interfaces:
         line = paths.lines[bolts[0]]
-        depth = next(cut.depth for cut in paths.cuts[bolts[0]] if set(cut.joints) & set(joints))
+        depth = next(cut.depth for cut in paths.cuts[bolts[0]] if set(cut.joints) <= set(joints))
         places = np.stack([_at_depth(paths.lines[k], line, depth) for k in bolts])
         radii = places - places.mean(axis=0)
         found = _crossing(structure, contacts, state, (joints, line.axis, places.mean(axis=0)))

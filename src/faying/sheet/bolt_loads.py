@@ -62,7 +62,7 @@ class BoltLoad:
     least: AtPreload | None
     mean: AtPreload
     greatest: AtPreload | None
-    missing: str = ""
+    missing: tuple[str, str] = ("", "")
 
 
 def bolt_loads(
@@ -91,16 +91,17 @@ def bolt_loads(
     loads = (*asked, *parted.heat.values(), *parted.rest.values())
     mean = answers(base, loads, progress)
     ends: list[LoadCases | None] = []
-    missing = ""
-    for which, wish in zip(("least preload in service", "greatest preload at assembly"), forces, strict=True):
+    missing = ["", ""]
+    for end, which in enumerate(("least preload in service", "greatest preload at assembly")):
+        wish = forces[end]
         ends.append(None)
         if np.any(wish <= 0):
-            missing = f"a {which} above 0 in every bolt"
+            missing[end] = f"a {which} above 0 in every bolt"
             continue
         try:
             ends[-1] = answers(at_preload(base, study, PreloadCase(tuple(wish.tolist()))), loads, progress)
         except (InputError, NotConverged) as fault:
-            missing = f"an equilibrium at the {which} ({fault})"
+            missing[end] = f"an equilibrium at the {which} ({fault})"
     out = {}
     for k, some in wanted.items():
         if some:
@@ -109,7 +110,7 @@ def bolt_loads(
                 for found in (ends[0], mean, ends[1])
             )
             assert middle is not None
-            out[k] = BoltLoad(least=least, mean=middle, greatest=greatest, missing=missing)
+            out[k] = BoltLoad(least=least, mean=middle, greatest=greatest, missing=(missing[0], missing[1]))
     return out
 
 

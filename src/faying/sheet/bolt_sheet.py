@@ -121,7 +121,8 @@ def bolt_sheet(
     """
     plan = Study.read(study)
     number = preload_index(plan.loads, preload)
-    progress = Progress(5, report)
+    stages = 7 if any(choice_for(plan, bolt.name).loads for bolt in plan.bolts) else 4
+    progress = Progress(stages, report)
     case = Case.of(bare(plan), progress)
     engine = engine_of("reanalysis", case)
     state = solve(case, number, engine, progress, ranges=False)
@@ -205,8 +206,9 @@ def _departures(factor: float, choice: BoltSheetChoice, found: BoltLoad | None) 
         if typed
         else ", as found, that the load factor does not give"
     )
-    missing = (found and found.missing) or "bolt.diameter and bolt.material"
-    return [_quantity(symbol, names[symbol] + under, "N", values[symbol], missing) for symbol in values]
+    ends = ("", "") if found is None else found.missing
+    missing = {symbol: ends[symbol == "dF_M"] or "bolt.diameter and bolt.material" for symbol in values}
+    return [_quantity(symbol, names[symbol] + under, "N", values[symbol], missing[symbol]) for symbol in values]
 
 
 def _quantity(symbol: str, name: str, unit: str, value: float | None, missing: str) -> Quantity:
@@ -270,7 +272,7 @@ def _loads(case: Case, index: int, choice: BoltSheetChoice, gain: float) -> list
     cuts = LoadPaths.of(case.structure).cuts[index]
     frictions = [case.structure.joints[k].friction for cut in cuts for k in cut.joints]
     friction = choice.slip_friction
-    if friction is None and frictions and None not in frictions:
+    if friction is None and all(frictions):  # neither a joint that sticks nor one without friction says it
         friction = min((f for f in frictions if f), default=None)
     low, high = choice.axial or (None, None)
     stated = choice.transverse is not None or choice.clamp is not None

@@ -251,8 +251,8 @@ def _fatigue(rolled_after: bool) -> tuple[Step, ...]:
             "R9",
             "F_Sm [N]",
             "mean bolt force",
-            "greatest assembly preload + greatest additional bolt force there - half of the range at the least preload",
-            lambda F_Mmax, F_SAM, F_SAu, F_SAo: F_Mmax + F_SAM - (F_SAo - F_SAu) / 2,
+            "greatest bolt force - half of the range of the additional bolt force at the least preload",
+            lambda F_Smax, F_SAu, F_SAo: F_Smax - (F_SAo - F_SAu) / 2,
         ),
         _step(
             "R9",

@@ -8,7 +8,7 @@ from typing import IO, Any, Self
 
 from faying import __version__
 from faying.errors import FayingError, InputError
-from faying.files import load_arrays, locked, release, write_arrays, write_text
+from faying.files import LOCK, load_arrays, locked, release, write_arrays, write_text
 from faying.study.study import Study
 
 
@@ -65,9 +65,8 @@ def _opened(out: Path, fingerprint: str, what: str) -> tuple[Path, IO[str]]:
         raise InputError(f"no folder {out.parent} to write {out.name} in; make it first")
     folder = out.with_name(out.name + ".part")
     label = folder / f"{what}.json"
-    new = not folder.exists()
     lock = locked(folder, folder, "choose another output with --out")
-    if new:
+    if all(one.name == LOCK for one in folder.iterdir()):
         write_text(label, json.dumps({"fingerprint": fingerprint, "version": __version__}))
         return folder, lock
     try:
