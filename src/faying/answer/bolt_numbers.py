@@ -14,7 +14,7 @@ from faying.contact.conductance import contact_conductance
 from faying.errors import InputError
 from faying.joint.clamping import Clamping, clamping, cone_of
 from faying.joint.load_path import Cut, LoadPaths
-from faying.joint.strength import seat_area, seat_limit
+from faying.joint.strength import least_seat_area, seat_limit
 from faying.joint.structure import Structure
 from faying.materials import ContactPair
 from faying.numerics.changed import UpdatedStiffness
@@ -57,7 +57,7 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
         modal_force=motion,
         modal_force_by_acceleration=motion / omega[:, :, None] ** 2,
         proof_share=forces / [NAN if b.bolt.fastener is None else b.bolt.fastener.proof_load for b in bolts],
-        seat_pressure=forces / [_least_area(structure, index) for index in range(len(bolts))],
+        seat_pressure=forces / [least_seat_area(structure, one) for one in structure.fitted_bolts],
         seat_limit=np.array([_limit(structure, index) for index in range(len(bolts))]),
         embedding=embedding,
         embedding_loss=_embedding_of(structure, found, embedding) / (bolt + members),
@@ -78,14 +78,6 @@ def _modal_forces(structure: Structure, shapes: Array) -> Array:
     forces = shapes.reshape(len(shapes), -1) @ structure.bolt_force_operator.T
     rigid = [bool(bolt.rigidity) for bolt in structure.fitted_bolts]
     return np.asarray(np.where(rigid, forces, NAN) / most[:, None])
-
-
-def _least_area(structure: Structure, index: int) -> float:
-    """The smaller area [m2] of a bolt's two seats; NaN for a meshed bolt."""
-    fitted = structure.fitted_bolts[index]
-    if not isinstance(fitted, FittedBolt):
-        return NAN
-    return min(seat_area(structure, fitted, face) for face in fitted.bolt.faces)
 
 
 def _limit(structure: Structure, index: int) -> float:

@@ -128,6 +128,13 @@ def seat_area(structure: Bolted, fitted: FittedBolt | BoltPlace, face: str) -> f
     return pi / 4 * (outer**2 - inner**2)
 
 
+def least_seat_area(structure: Bolted, fitted: FittedBolt | FittedSolidBolt) -> float:
+    """The smaller area [m2] of a bolt's two seats; NaN for a meshed bolt."""
+    if not isinstance(fitted, FittedBolt):
+        return float("nan")
+    return min(seat_area(structure, fitted, face) for face in fitted.bolt.faces)
+
+
 def seat_limit(structure: Bolted, face: str) -> tuple[float, str] | None:
     """Pressure [Pa] that the part of a face bears under a bolt, and what that is; None where nothing is known."""
     limit: float | None = getattr(structure.materials[structure.mesh.face_part[face]], "bearing_limit", None)

@@ -9,7 +9,7 @@ import numpy as np
 from faying.bolt.bolt import Bolt, FittedBolt
 from faying.joint.bolted import BoltedStructure
 from faying.joint.load_path import LoadPaths
-from faying.joint.strength import seat_area
+from faying.joint.strength import least_seat_area
 from faying.loads.contact import LoadedContact
 from faying.loads.crossing import bent, own_heat, transverse_loads
 from faying.loads.statics import LoadedState
@@ -166,7 +166,7 @@ def bolt_answers(
     moment, shear = np.moveaxis(np.array(ends), 2, 0)
     force, load = preload + np.array(change), np.array(working)
     some = np.abs(load) > NOTHING * preload  # not where F_A is not known
-    areas = np.array([_least_area(structure, k) for k in range(len(preload))])
+    areas = np.array([least_seat_area(structure, one) for one in structure.fitted_bolts])
     return BoltAnswers(
         bolt_force=force,
         bolt_force_linear=preload + np.array(linear),
@@ -205,14 +205,6 @@ def cut_loads(
         [float(change[k] - sum(lost[j][paths.owner[j] == k].sum() for j in cut.joints)) for cut in cuts]
         for k, cuts in enumerate(paths.cuts)
     ]
-
-
-def _least_area(structure: BoltedStructure, index: int) -> float:
-    """The smaller area [m2] of a bolt's two seats; NaN for a meshed bolt."""
-    fitted = structure.fitted_bolts[index]
-    if not isinstance(fitted, FittedBolt):
-        return NAN
-    return min(seat_area(structure, fitted, face) for face in fitted.bolt.faces)
 
 
 def _head_friction(bolt: object) -> float:
