@@ -22,7 +22,7 @@ from faying.case.engine import engine_of
 from faying.case.level_damping import level_notes
 from faying.case.mesh_error import mesh_error, mesh_notes
 from faying.case.provenance import provenance
-from faying.case.solve import LoadedCase, solve
+from faying.case.solve import LoadedCase, released, solve
 from faying.errors import InputError, NotConverged
 from faying.joint.structure import Structure
 from faying.misuse import checked_call
@@ -76,13 +76,18 @@ def run(
     case = Case.of(study, progress)
     solver = engine_of(engine, case)
     states = [solve(case, number, solver, progress) for number in range(len(study.loads))]
-    alternatives = [solve_alternative(case, choice, solver, progress) for choice in study.alternatives]
-    progress.begin("modes free and bonded")
-    free, bonded, notes = bounds(case)
+    del solver  # its basis and, below, the factorisation of the states: memory is short
+    progress.begin("intervals and bolts")
     mesh = mesh_error(case, states) if study.modes.intervals else None
     band, interval, more = intervals(case, states, mesh)
     more += mesh_notes(case, mesh) if study.modes.intervals else []
-    result = collect(case, states, (free, bonded), [*notes, *findings(case, states), *more], alternatives)
+    bolts, bolt_notes = _bolts(case, states)
+    states = [released(state) for state in states]
+    alternatives = [solve_alternative(case, choice, engine, progress) for choice in study.alternatives]
+    progress.begin("modes free and bonded")
+    free, bonded, notes = bounds(case)
+    notes = [*notes, *findings(case, states), *more, *bolt_notes]
+    result = replace(collect(case, states, (free, bonded), notes, alternatives), bolt_numbers=bolts)
     if band is not None:
         result = replace(result, **band.fields(case.loads))
     if interval is not None:
@@ -118,6 +123,7 @@ def stages(study: Study) -> list[str]:
         out += [f"frequency response at {load}"] if study.response is not None else []
         if study.hammer is not None and number == study.hammer.load:
             out.append("frequency response at the points of the test")
+    out.append("intervals and bolts")
     out += [stage for _ in study.alternatives for load in loads for stage in (f"preload {load}", f"modes at {load}")]
     out.append("modes free and bonded")
     return out if study.backbone is None else [*out, f"mode {study.backbone.mode} over amplitude"]
@@ -152,8 +158,6 @@ def collect(
     every += level_notes(case, [state.levels for state in states], lossless)
     every += [*(note for b in alternatives for note in b.notes), *_closing_notes(study, rigid, first)]
     way = structure.solver(study.modes.solver)
-    bolts, more = _bolts(case, states, shapes)
-    every += more
     if isinstance(way, OverMpi):
         every.append(Note(code="mpi", text=f"{way.summary}; no count checks for missed modes"))
     result = Result(
@@ -185,7 +189,6 @@ def collect(
         notes=tuple(dict.fromkeys(every)),
         response=_response(study, states),
         comparison=comparison,
-        bolt_numbers=bolts,
         **conductances(case, states),
         provenance=provenance(study),
     )
@@ -195,9 +198,9 @@ def collect(
     return replace(result, hammer=case.hammer.compared(result, full))
 
 
-def _bolts(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:
+def _bolts(case: Case, states: Sequence[LoadedCase]) -> tuple[BoltNumbers | None, list[Note]]:
     try:
-        return bolt_numbers(case, states, shapes), []
+        return bolt_numbers(case, states, shapes_of(case, states)), []
     except NotConverged as fault:
         return None, [Note(code="bolt-numbers", text=f"no compliance and load factor of the bolts: {fault}")]
 

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 
 from faying.case.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
-from faying.case.engine import Engine
-from faying.case.solve import LoadedCase, solve
+from faying.case.engine import engine_of
+from faying.case.solve import LoadedCase, released, solve
 from faying.errors import FayingError
 from faying.notes import OF_ALTERNATIVE, Note
-from faying.numerics.solve import Released
 from faying.study.keys.alternative import AlternativeChoice
 from faying.study.study import Study
 
@@ -35,16 +34,16 @@ class Alternative:
     notes: tuple[Note, ...]
 
 
-def solve_alternative(case: Case, choice: AlternativeChoice, engine: Engine, progress: Progress) -> Alternative:
+def solve_alternative(case: Case, choice: AlternativeChoice, engine: str, progress: Progress) -> Alternative:
     """Solve a case under another law on all joints, at all loads, without meshing anew.
 
-    engine: that of the case under its own law.
+    engine: name of the one that solves it.
     """
     done = progress.done
     try:
         other = changed(case, choice)
-        solver, loads = engine.of(other.modal, other.study.preloads), range(len(case.study.loads))
-        states = tuple(_slim(solve(other, k, solver, progress, ranges=False)) for k in loads)
+        solver, loads = engine_of(engine, other), range(len(case.study.loads))
+        states = tuple(released(solve(other, k, solver, progress, ranges=False)) for k in loads)
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)
         text = f"{OF_ALTERNATIVE}{choice.name}: no answer: {fault}"
@@ -56,12 +55,6 @@ def solve_alternative(case: Case, choice: AlternativeChoice, engine: Engine, pro
         if note.code in KEPT_NOTES and note not in case.notes
     )
     return Alternative(name=choice.name, case=other, states=states, notes=tuple(dict.fromkeys(other_notes)))
-
-
-def _slim(state: LoadedCase) -> LoadedCase:
-    """The state without its factorisation: an alternative needs none, and memory is short."""
-    factor = state.modes.factorisation
-    return replace(state, modes=replace(state.modes, factorisation=Released(name=factor.name, memory=factor.memory)))
 
 
 def study_with(study: Study, choice: AlternativeChoice) -> Study:

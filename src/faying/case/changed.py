@@ -53,7 +53,7 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
         factor=last.modes.factorisation,
         reference=(last.modes.factorised + last.modes.shift * structure.dynamic_matrices[1]).tocsr(),
         state=last.preload.displacement,
-        shapes=last.modes.shapes[:, case.rigid_count :],
+        shapes=np.concatenate([one.modes.shapes[:, case.rigid_count :] for one in states[::-1]], axis=1),
         count=case.study.modes.count,
     )
     friction = [joint.friction for joint in structure.joints]

@@ -1,7 +1,7 @@
 """One load of a case: the preload of its joints, their springs, the modes and the response."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from faying.case.above_range import AboveRange, bonded_above_range
 from faying.case.case import Case, Progress
@@ -19,6 +19,7 @@ from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.numerics.damped import DampedModes
 from faying.numerics.modes import Modes
+from faying.numerics.solve import Released
 from faying.typing import Array, Mask
 
 
@@ -111,6 +112,13 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
         outside_share=_outside(structure, springs),
         above_range_share=_share(springs, [j.above_range(s) for j, s in zip(structure.joints, springs, strict=True)]),
     )
+
+
+def released(state: LoadedCase) -> LoadedCase:
+    """The state without its factorisation, which takes most of its memory."""
+    factor = state.modes.factorisation
+    gone = Released(name=factor.name, memory=factor.memory)
+    return replace(state, modes=replace(state.modes, factorisation=gone, factorised=None))
 
 
 def _responses(

@@ -15,6 +15,7 @@ import numpy as np
 from faying.fe.elasticity import Solid, add_rows, distinct, pair_keys, pairs_of, stiffness_of, with_transpose
 from faying.fe.elements import SOLIDS, Element
 from faying.fe.solids import SolidMesh
+from faying.numerics.product import product
 from faying.typing import Array, Index, Mask
 
 CHUNK = 2000  # elements at a time, which bounds the memory
@@ -136,7 +137,7 @@ def _energy(stiffness: Any, force: Array, left_out: Mask) -> Array:
     along = rest / diagonal
     size = np.einsum("im,im->m", rest, along)
     for _ in range(STEPS):
-        pushed = np.asarray(stiffness @ along)
+        pushed = product(stiffness, along)
         pushed[left_out] = 0.0
         step = size / np.maximum(np.einsum("im,im->m", along, pushed), TINY)
         solved += step * size  # each step adds so much to f x, as its direction is conjugate to those before
@@ -238,8 +239,8 @@ def _assembled(mesh: SolidMesh, materials: Mapping[str, Solid], functions: Index
         swapped = functions[here][:, a] > functions[here][:, b]
         blocks[swapped] = blocks[swapped].transpose(0, 2, 1)
         add_rows(total, slot[here.start * len(a) : here.stop * len(a)], blocks.reshape(-1, 9))
-    rows, columns = pairs // count, pairs % count
+    rows, columns = pairs // count, (pairs % count).astype(np.int32)
     total *= np.where(rows == columns, 0.5, 1.0)[:, None]
-    pointer = np.searchsorted(rows, np.arange(count + 1))
+    pointer = np.searchsorted(rows, np.arange(count + 1)).astype(np.int32)
     upper = bsr_array((total.reshape(-1, 3, 3), columns, pointer), shape=(3 * count, 3 * count)).tocsr()
     return with_transpose(upper)

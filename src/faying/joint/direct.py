@@ -137,10 +137,6 @@ class Direct:
         modes, _ = self._modes(springs)
         return in_order_of(before, self.problem, lambda shapes: modes, one_way)
 
-    def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Direct":
-        """See `Engine`."""
-        return Direct(problem, preloads)
-
     def _modes(self, springs: Sequence[Springs[Interface]]) -> tuple[Modes, Any]:
         problem, structure = self.problem, self.problem.structure
         stiffness, _ = structure.coupled(springs)

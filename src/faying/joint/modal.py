@@ -9,7 +9,6 @@ import numpy as np
 from faying.fe.interface import Interface
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
-from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs
 from faying.numerics.damped import DampedModes
 from faying.numerics.follow import follow, may_cross
@@ -87,9 +86,6 @@ class Engine(Protocol):
         before: the modes whose order they have, each that of the mode whose shape it has; one_way: whether no spring is
         softer than those of these modes, or none is stiffer.
         """
-
-    def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Engine":
-        """The same for the structure under another law or form, on the same mesh."""
 
 
 def in_order_of(before: Modes, problem: ModalProblem, found: Callable[[bool], Modes], one_way: bool) -> Array:

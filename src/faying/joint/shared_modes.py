@@ -162,16 +162,11 @@ def modes_with(
 
 
 class Preloads:
-    """The equilibria of a structure at its preloads: at all of them at once, where they can go together.
+    """The equilibria of a structure at its preloads: at all of them at once, where they can go together."""
 
-    problem: that of the structure, or a like one with a factorisation; made here where None.
-    """
-
-    def __init__(
-        self, modal: ModalProblem, preloads: Sequence[PreloadCase], problem: PreloadProblem | None = None
-    ) -> None:
+    def __init__(self, modal: ModalProblem, preloads: Sequence[PreloadCase]) -> None:
         self.structure, self.preloads = modal.structure, preloads
-        self.problem = problem or modal.structure.assembly(solver=modal.choice.solver)
+        self.problem = modal.structure.assembly(solver=modal.choice.solver)
         self._found: list[PreloadState | None] | None = None
 
     def at(self, number: int) -> PreloadState:
@@ -202,17 +197,9 @@ class Reanalysis:
     factorisation of the preload. `Direct` has the same answer.
     """
 
-    def __init__(
-        self,
-        modal: ModalProblem,
-        preloads: Sequence[PreloadCase],
-        *,
-        shared: SharedModes | None = None,
-        problem: PreloadProblem | None = None,
-    ) -> None:
+    def __init__(self, modal: ModalProblem, preloads: Sequence[PreloadCase]) -> None:
         self.modal = modal
-        self._preloads = Preloads(modal, preloads, problem)
-        self._shared = SharedModes() if shared is None else shared
+        self._preloads, self._shared = Preloads(modal, preloads), SharedModes()
         self._looked = False  # for modes that only the ends of a range bring among the lowest
 
     def preload(self, number: int) -> PreloadState:
@@ -244,10 +231,3 @@ class Reanalysis:
             return self._shared.of(self.modal, springs, tolerance=RANGE_ERROR, shapes=shapes)[0]
 
         return in_order_of(before, self.modal, found, one_way)
-
-    def of(self, problem: ModalProblem, preloads: Sequence[PreloadCase]) -> "Reanalysis":
-        """See `Engine`; the factorisation at hand serves the other structure, too."""
-        assembly = problem.structure.assembly(solver=problem.choice.solver)
-        if self._shared.near is not None:
-            assembly.adopt_factor(self._shared.near.modes.factorisation, problem.shift_frequency)
-        return Reanalysis(problem, preloads, shared=self._shared, problem=assembly)

@@ -114,7 +114,8 @@ def steady(
     least, greatest = motion.approach.min(axis=0), motion.approach.max(axis=0)
     _normal(sliders, motion, least, greatest, answer)
     moved = np.sqrt(np.max(sum((u - start.slip[:, i]) ** 2 for i, u in enumerate(motion.slip)), axis=0))
-    stays = np.linalg.norm(start.stretch, axis=2) + moved[:, None] <= sliders.reach * (least[:, None] - sliders.onset)
+    stretched = np.hypot(start.stretch[..., 0], start.stretch[..., 1])
+    stays = stretched + moved[:, None] <= sliders.reach * (least[:, None] - sliders.onset)
     _stuck(sliders, start, motion, stays, answer)
     active = ~stays & (greatest[:, None] > sliders.onset) & (sliders.k_t > 0)
     for points in _blocks(active.sum(axis=1)):

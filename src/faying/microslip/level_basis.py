@@ -56,11 +56,15 @@ def level_basis(
         wanted = list(range(count))
         for _ in range(ROUNDS):
             model = level_model(structure, preload, basis, own)
-            cycles = {k: cycle for k in wanted if (cycle := _greatest(model, levels, k)) is not None}
+            found_cycles = {k: _greatest(model, levels, k) for k in wanted}
+            # the basis has the modes at rest
+            cycles = {k: cycle for k, cycle in found_cycles.items() if cycle is not None and not cycle.at_rest}
             if not cycles:
                 break
             forces = np.concatenate([_left(structure, model, cycle) for cycle in cycles.values()], axis=1)
-            moved = conjugate_gradients(at_rest.__matmul__, found.modes.factorisation, forces, accuracy=ACCURACY)
+            moved = conjugate_gradients(
+                at_rest.__matmul__, found.modes.factorisation, forces, accuracy=ACCURACY, least=(SMALL / 2) ** 2
+            )
             size = np.sqrt(np.maximum(np.einsum("ij,ij->j", forces, moved), 0.0))
             worst = size.reshape(-1, ROWS).max(axis=1)
             wanted = [k for k, one in zip(cycles, worst, strict=True) if one > GOOD]

@@ -74,6 +74,7 @@ class LevelCycle:
         error: of the damping, over it [-].
         motion: Fourier coefficients of the coordinates (1 + 2H, m) [m] in the last pass.
         traction: those of the tractions of each joint (1 + 2H, q, 3) [Pa] under that motion.
+        at_rest: whether its joints soften so little that it keeps its motion at rest.
     """
 
     frequency: float
@@ -81,6 +82,7 @@ class LevelCycle:
     error: float
     motion: Array
     traction: tuple[Array, ...]
+    at_rest: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,7 +129,8 @@ class LevelModel:
             wanted, squared = self._secants(motion, cycles), speed**2
             # change of the squared frequency, to first order
             softer = sum(j.work(c, motion[1]) for j, c in zip(self.slip.joints, wanted, strict=True)) / amplitude**2
-            if done == 0 and abs(softer) < SLIGHT * squared:
+            at_rest = done == 0 and abs(softer) < SLIGHT * squared
+            if at_rest:
                 speed, error = float(np.sqrt(squared + softer)), abs(softer) / squared
                 break
             before_missed, missed = missed, _diagonals(wanted) - _diagonals(secants)
@@ -152,6 +155,7 @@ class LevelModel:
             error=min(error, 1.0) if np.isfinite(speed) else np.nan,
             motion=marched,
             traction=tuple(cycle.traction for cycle in cycles),
+            at_rest=at_rest,
         )
 
     def _towards(

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.numerics.product import product
 from faying.numerics.span import ROUNDING, GrowingColumns, extension
 from faying.typing import Array
 
@@ -47,7 +48,7 @@ class Basis:
         """
         # what rounding leaves of rigid motions would grow with every solve, and come back as modes of no frequency
         new = new - self.rigid @ (self.rigid_momentum.T @ new)
-        scale = float(np.einsum("ij,ij->j", new, self.reference @ new).max())
+        scale = float(np.einsum("ij,ij->j", new, product(self.reference, new)).max())
         found, image = extension(
             new, self.vectors, self._image.values, self.reference, least=max(least, ROUNDING * scale)
         )
@@ -59,9 +60,9 @@ class Basis:
 
         image: reference @ new, computed where None.
         """
-        self._image.add(np.asarray(self.reference @ new) if image is None else image)
+        self._image.add(product(self.reference, new) if image is None else image)
         # the vectors are read once for all operators: they are far more than what is added
-        images = np.concatenate([operator @ new for operator in self.operators], axis=1)
+        images = np.concatenate([product(operator, new) for operator in self.operators], axis=1)
         sides, corners = self.vectors.T @ images, new.T @ images
         for i, (side, corner) in enumerate(
             zip(*(np.split(x, len(self.small), axis=1) for x in (sides, corners)), strict=True)

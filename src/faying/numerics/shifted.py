@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from faying.numerics.product import product
 from faying.typing import Array, Index
 
 
@@ -23,7 +22,10 @@ class Shifted:
 
     def __matmul__(self, vectors: Array) -> Array:
         """Times one vector (n,) or several (n, m)."""
-        return np.asarray(self.stiffness @ vectors + self.shift * (self.mass @ vectors))
+        found = product(self.mass, vectors)
+        found *= self.shift
+        found += product(self.stiffness, vectors)
+        return found
 
     def assembled(self) -> Any:
         """The sum as CSR."""

@@ -229,6 +229,7 @@ def conjugate_gradients(
     accuracy: float,
     limit: int = 200,
     like: Array | None = None,
+    least: float = 0.0,
 ) -> Array:
     """Solve for several right-hand sides (n, m) by conjugate gradients, each on its own.
 
@@ -239,6 +240,7 @@ def conjugate_gradients(
         accuracy: of the residual relative to the right-hand side.
         limit: steps.
         like: solutions (n, k) of like equations; it starts from the best combination of them.
+        least: energy, right x solution, below which one step is enough.
 
     Raises:
         NotConverged: the residual stays above the accuracy.
@@ -249,9 +251,10 @@ def conjugate_gradients(
         shares = np.linalg.lstsq(like.T @ image, like.T @ right, rcond=1e-12)[0]
         found, rest = like @ shares, right - image @ shares
     target = accuracy * np.linalg.norm(right, axis=0)
-    step, slope = np.zeros_like(right), np.ones(right.shape[1])
-    for _ in range(limit):
-        if np.all(np.linalg.norm(rest, axis=0) <= target):
+    open_ = np.flatnonzero(np.linalg.norm(rest, axis=0) > target)  # the right-hand sides to go on with
+    rest, step, slope = rest[:, open_], np.zeros((len(rest), len(open_))), np.ones(len(open_))
+    for done in range(limit):
+        if not len(open_):
             return found
         ahead = factor.solve(rest)
         fall = np.einsum("ij,ij->j", rest, ahead)
@@ -260,8 +263,13 @@ def conjugate_gradients(
         force = product(step)
         bend = np.einsum("ij,ij->j", step, force)
         length = np.where(bend > 0, fall / np.where(bend > 0, bend, 1.0), 0.0)
-        found += step * length
+        found[:, open_] += step * length
         rest -= force * length
+        goes_on = np.linalg.norm(rest, axis=0) > target[open_]
+        if done == 0:
+            goes_on &= fall > least
+        if not np.all(goes_on):
+            open_, slope, rest, step = open_[goes_on], slope[goes_on], rest[:, goes_on], step[:, goes_on]
     raise NotConverged(f"conjugate gradients: the residual stays above {accuracy:.0e} after {limit} steps")
 
 

@@ -36,9 +36,9 @@ def extension(new: Array, basis: Array, image: Array, operator: Any, *, least: f
         last, and operator @ columns.
     """
     new = new - basis @ (image.T @ new)
-    new = new @ _directions(new.T @ (operator @ new), least)
+    new = new @ _directions(new.T @ product(operator, new), least)
     new = new - basis @ (image.T @ new)  # what rounding leaves of the first pass
-    moved = np.asarray(operator @ new)
+    moved = product(operator, new)
     correction = _inverse_root(new.T @ moved)  # a direction that was small has lost digits of its size
     return new @ correction, moved @ correction
 

@@ -140,10 +140,10 @@ def waves(result: Result) -> Rows:
     if result.wave_frequencies is None:
         return []
     heads = [f"{load_text(load)} [Hz]" for load in result.loads]
-    cells = [[_over_draws(values, ".2f") for values in mode.T] for mode in np.moveaxis(result.wave_frequencies, 2, 0)]
+    cells = [[_over_draws(values, ".1f") for values in mode.T] for mode in np.moveaxis(result.wave_frequencies, 2, 0)]
     if result.wave_slopes is not None:
         heads.append("d f/d preload [Hz/kN]")
-        cells = [[*row, _over_draws(1e3 * s, "+.3f")] for row, s in zip(cells, result.wave_slopes.T, strict=True)]
+        cells = [[*row, _over_draws(1e3 * s, "+.2f")] for row, s in zip(cells, result.wave_slopes.T, strict=True)]
     return by_mode(heads, cells)
 
 

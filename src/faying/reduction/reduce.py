@@ -24,6 +24,7 @@ from faying.joint.support_check import check_motions, checked_preload
 from faying.numerics.basis import Basis
 from faying.numerics.constraint import constrain
 from faying.numerics.modes import lowest_modes
+from faying.numerics.product import product
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
 from faying.numerics.solve import Factorisation
@@ -33,6 +34,7 @@ from faying.reduction.reduced import ReducedModel, ReducedMotion, Variant
 from faying.typing import Array
 
 MAX_ENRICHMENTS = 60  # enrichments of one variant after which something else must be wrong
+AT_ONCE = 64  # modes of variants that are enriched together: a factor is read once for all, and more take more room
 EXTRA_MODES = 25  # real modes of the reference beyond those wanted: they speed the enrichment of the highest ones
 # the force balance enters a frequency through k(p), to first order; the modes enter by the square of their error
 STATIC_SHARE = 15.0
@@ -266,10 +268,10 @@ class Reduction:
 
     def _scaled(self, matrix: Any, shares: Sequence[Any], kind: int, x: Any) -> Any:
         """Product of a matrix of the structure with x, its parts scaled; kind: 0 for stiffness, 1 for mass."""
-        out = matrix @ x
+        out = product(matrix, x)
         for scales, share in zip(self.model.scales or (), shares, strict=False):
             if scales[kind] != 1:
-                out = out + (scales[kind] - 1) * (share @ x)
+                out = out + (scales[kind] - 1) * product(share, x)
         return out
 
     def static_residual(
@@ -403,33 +405,53 @@ class Reduction:
     def _train_dynamic(self, variants: Sequence[Gapped], found: Sequence[PreloadState], tolerance: float) -> None:
         """Grow the basis for vibration until all modes of every variant are right; tolerance: of the eigenvalues."""
         poor: list[Any] = [np.arange(self.model.count)] * len(variants)
+        at_once = max(1, AT_ONCE // self.model.count)
         for _ in range(MAX_ENRICHMENTS):
-            left = []
-            for k, one in enumerate(variants):
-                if len(poor[k]):
-                    self.at(one)
-                    left.append((k, *self.modal_parts(one.laws, found[k].pressures, poor[k])))
-            right = np.asfortranarray(np.concatenate([part for _, parts, _ in left for part in parts], axis=1))
-            answers = self.factor.solve(right)
-            energy = np.einsum("ij,ij->j", right, answers)
-            corrections, at, most = [], 0, 0.0
-            for k, parts, size in left:
-                spans = [slice(at + i * len(size), at + (i + 1) * len(size)) for i in range(len(parts))]
-                error = np.sum([energy[span] for span in spans], axis=0) / size
-                far, most = error > tolerance, max(most, float(error.max()))
-                corrections += [answers[:, span][:, far] / np.sqrt(size[far]) for span in spans]
-                poor[k] = poor[k][far]  # the others only gain by what is added
-                at += len(parts) * len(size)
-            corrections = [correction for correction in corrections if correction.shape[1]]
-            if not corrections:
+            open_, most, grown = [k for k, some in enumerate(poor) if len(some)], 0.0, 0
+            if not open_:
                 return
-            if not self.dynamic.add(np.concatenate(corrections, axis=1), least=LEFT_OUT * tolerance):
+            for begin in range(0, len(open_), at_once):
+                some = open_[begin : begin + at_once]
+                corrections, error = self._corrections(variants, found, poor, some, tolerance)
+                most = max(most, error)
+                if corrections:
+                    grown += self.dynamic.add(np.concatenate(corrections, axis=1), least=LEFT_OUT * tolerance)
+                    self.refresh()
+            if not grown and any(len(some) for some in poor):
                 what = f"the modes stay wrong by {most:.1e}" if len(variants) == 1 else "some modes stay wrong"
                 raise NotConverged(f"reduction: {what} and nothing improves them")
-            self.refresh()
         raise NotConverged(
             f"reduction: {MAX_ENRICHMENTS} enrichments do not bring a mode to {tolerance:.0e}; ask for fewer modes"
         )
+
+    def _corrections(
+        self,
+        variants: Sequence[Gapped],
+        found: Sequence[PreloadState],
+        poor: list[Any],
+        some: Sequence[int],
+        tolerance: float,
+    ) -> tuple[list[Array], float]:
+        """What mends the modes of some variants that are wrong by more than the tolerance, and the greatest error.
+
+        poor: of every variant, the modes that were wrong; those that are right now are taken out.
+        """
+        left = []
+        for k in some:
+            self.at(variants[k])
+            left.append((k, *self.modal_parts(variants[k].laws, found[k].pressures, poor[k])))
+        right = np.asfortranarray(np.concatenate([part for _, parts, _ in left for part in parts], axis=1))
+        answers = self.factor.solve(right)
+        energy = np.einsum("ij,ij->j", right, answers)
+        corrections, at, most = [], 0, 0.0
+        for k, parts, size in left:
+            spans = [slice(at + i * len(size), at + (i + 1) * len(size)) for i in range(len(parts))]
+            error = np.sum([energy[span] for span in spans], axis=0) / size
+            far, most = error > tolerance, max(most, float(error.max()))
+            corrections += [answers[:, span][:, far] / np.sqrt(size[far]) for span in spans]
+            poor[k] = poor[k][far]  # the others only gain by what is added
+            at += len(parts) * len(size)
+        return [correction for correction in corrections if correction.shape[1]], most
 
     def train(
         self,
