@@ -167,7 +167,7 @@ def test_the_command_writes_report_figures_and_files(result, tmp_path, monkeypat
         "faying.answer.run.run", lambda plan, report, **_: report("modes free and bonded", 1, 2) or result
     )
     with pytest.raises(SystemExit) as stop:
-        main(["run", str(EXAMPLE), "--uff", "--out", str(tmp_path)])
+        main(["run", str(EXAMPLE), "--all", "--uff", "--out", str(tmp_path)])
     out = capsys.readouterr().out
     assert stop.value.code == 0, out
     assert "hammer test at 6 kN" in out

@@ -47,7 +47,7 @@ def numbers(out):
 
 def test_run_law_and_surface_print_the_same(tmp_path, capsys):
     scan = str(tmp_path / "s.x3p")
-    ran = printed(capsys, "run", study(tmp_path), "--no-files")
+    ran = printed(capsys, "run", study(tmp_path), "--all", "--no-files")
     joint, file, *in_run, of_law = numbers(ran[ran.index(HEAD) :])
     assert (joint, file) == ("joint", "s.x3p")
     assert in_run == numbers(printed(capsys, "surface", scan))[1:]

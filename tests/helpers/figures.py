@@ -36,6 +36,7 @@ from faying.output.figures import asperity, sweep
 from faying.result import Receptance, backbone_figure, difference_figure
 from faying.result.backbone_record import QuasiStaticCheck
 from faying.result.difference import compare_runs
+from faying.result.interval import Interval
 from faying.result.run_record import MeasuredComparison
 from faying.study.keys.uncertain import Input
 from faying.surface import figure as surface
@@ -145,6 +146,7 @@ def result():
     f = np.array([[100.0, 250.0, 600.0], [110.0, 260.0, 610.0]])
     offsets = 0.01 * np.array([1.0, 2.0, 1.5, 0.5, 1.2, 1.5, 1.0])[:, None, None, None]
     ends = np.array([-1.0, 1.0])[None, :, None, None] * offsets * np.ones((1, 1, 2, MODES))
+    interval = Interval(sources=SOURCES, offsets=ends, frequencies=f)
     damping = np.array([1e-3, 1.1e-3, 4e-3])[None, :, None] * np.ones((2, 3, MODES))
     test = np.array([[98.0, 252.0], [111.0, 290.0]])
     paired = np.array([[0, 1], [0, 1]])
@@ -153,8 +155,9 @@ def result():
         bonded=1.02 * f[-1],
         low=0.97 * f,
         high=1.01 * f,
-        interval_low=0.95 * f,
-        interval_high=1.06 * f,
+        interval_best=interval.best,
+        interval_low=interval.low,
+        interval_high=interval.high,
         interval_offsets=ends,
         interval_sources=SOURCES,
         levels=np.array([0.1, 1.0, 10.0]),

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from faying.notes import Note
 from faying.output import answer, report
 from faying.output import page as page_parts
 from faying.output.sections import sections
@@ -113,5 +114,33 @@ def test_pictures_have_words_for_those_who_do_not_see_them():
 
 def test_the_answer_says_how_the_test_lies():
     assert "At 8 kN the lowest 3 elastic modes are from 110 to 610 Hz." in answer.lead(rich())
-    assert "The first is between 104 and 117 Hz (5 to 95 %)." in answer.lead(rich())
-    assert "3 of 4 measured frequencies are within 5 to 95 %." in answer.lead(rich())  # 290 Hz lies above 276
+    # seven sources of 0.5 to 2 % each: exp(+-3.49 %)
+    assert "The first is between 106.2 and 113.9 Hz (5 to 95 %)." in answer.lead(rich())
+    assert "3 of 4 measured frequencies are within 5 to 95 %." in answer.lead(rich())  # 290 Hz lies above 269
+
+
+def test_the_terminal_has_the_answer_on_one_screen():
+    """Best estimates first; damping that is that at rest is one sentence; tables and further notes with --all."""
+    from faying.cli.run import text
+
+    found = rich()
+    notes = tuple(Note(code="window", text=f"{k}: {'x ' * 90}") for k in range(9))
+    many = replace(found, notes=notes)
+    short, full = (text(many, everything=everything).splitlines() for everything in (False, True))
+    assert len(short) <= 40
+    assert max(map(len, short)) <= 80
+    assert short[-1] == "faying run --all prints all tables and notes"
+    row = next(line for line in short if line.startswith("   1"))
+    best, interval, modelled = f"{found.interval.best[-1, 0]:.1f}", "106.2 .. 113.9", "110.00"
+    assert row.index(best) < row.index(interval) < row.index(modelled)
+    assert set(short[:-1]) <= set(full)
+    assert any(line.startswith("damping ratio at") for line in full)
+
+
+def test_damping_is_a_sentence_where_slip_adds_less_than_a_tenth_to_what_is_at_rest():
+    found, slight = rich(), np.array([1e-5, 2e-5, 9e-5]) * np.ones((2, 3, 3))
+    for factor, sentence in ((1.0, True), (1.2, False)):
+        slip = factor * slight
+        some = replace(found, level_slip=slip, level_damping=1e-3 + slip, level_low=3e-4 + slip, level_high=3e-3 + slip)
+        assert answer.damping_line(some).startswith("Damping at 1 m/s2: 0.031 .. 0.1 .. 0.3 %") == sentence
+        assert any("damping" in head for head in answer.answer(some)[0]) != sentence

@@ -15,21 +15,31 @@ SCORE = 1.6448536
 def interval(*sources: tuple[float, float]) -> Interval:
     """One load, one mode; each source by its mean and standard deviation of ln f."""
     offsets = np.array([[m - SCORE * sd, m + SCORE * sd] for m, sd in sources])
-    return Interval(sources=tuple(f"source {k}" for k in range(len(sources))), offsets=offsets[:, :, None, None])
+    names = tuple(f"source {k}" for k in range(len(sources)))
+    return Interval(sources=names, offsets=offsets[:, :, None, None], frequencies=np.array([[100.0]]))
 
 
 def test_independent_normal_sources_have_the_quantiles_of_their_sum():
     rng = np.random.default_rng(0)
     sources = (0.0, 0.01), (-0.02, 0.03), (0.004, 0.002)
     drawn = 100.0 * np.exp(sum(rng.normal(m, sd, 400_000) for m, sd in sources))
-    low, high = interval(*sources).ends(np.array([[100.0]]))
+    found = interval(*sources)
     # the quantiles of 400,000 samples scatter by sqrt(0.05 * 0.95/400,000)/density = 0.33 % of the standard deviation
-    assert [low[0, 0], high[0, 0]] == pytest.approx(np.quantile(drawn, [0.05, 0.95]), abs=100 * 0.0318 * 0.015)
+    ends = [found.low[0, 0], found.high[0, 0]]
+    assert ends == pytest.approx(np.quantile(drawn, [0.05, 0.95]), abs=100 * 0.0318 * 0.015)
+    # the median scatters by half over sqrt(400,000) times the density: 0.2 % of the standard deviation
+    assert found.best[0, 0] == pytest.approx(np.median(drawn), abs=100 * 0.0318 * 0.01)
 
 
 def test_no_stiffness_of_a_joint_passes_free_and_bonded_faces():
-    found = Interval(sources=("law", "mode"), offsets=np.array([[[-0.9, 0.3]], [[-0.02, 0.02]]]).reshape(2, 2, 1, 1))
-    low, high = found.ends(np.array([[100.0]]), free=[60.0], bonded=[105.0])
+    found = Interval(
+        sources=("law", "mode"),
+        offsets=np.array([[[-0.9, 0.3]], [[-0.02, 0.02]]]).reshape(2, 2, 1, 1),
+        frequencies=np.array([[100.0]]),
+        free=[60.0],
+        bonded=[105.0],
+    )
+    low, high = found.low, found.high
     # what is not known of the parts moves the bounds as well
     assert low[0, 0] == pytest.approx(60 * np.exp(-0.02))
     assert high[0, 0] == pytest.approx(105 * np.exp(0.02))
@@ -46,7 +56,8 @@ def test_what_is_known_better_narrows_by_its_share_alone():
     less = found.narrowed({"source 1": 0.5})
     assert less.width[0, 0] == pytest.approx(2 * SCORE * np.hypot(0.01, 0.015))
     # the middle stays where it was
-    assert np.sqrt(np.prod(less.ends(np.array([[50.0]])))) == pytest.approx(50 * np.exp(0.01))
+    assert less.best[0, 0] == pytest.approx(np.sqrt(less.low * less.high)[0, 0])
+    assert less.best[0, 0] == pytest.approx(100 * np.exp(0.01))
     assert found.narrowed({"another": 0.1}).width == found.width
 
 

@@ -138,7 +138,7 @@ def _combined(
     if mesh is not None:
         found["mesh"] = mesh.offsets
     names = tuple(name for name in SCATTER if name in found)
-    return Interval(sources=names, offsets=np.stack([found[name] for name in names]))
+    return Interval(sources=names, offsets=np.stack([found[name] for name in names]), frequencies=frequencies)
 
 
 def _preload_factors(case: Case) -> tuple[float, float]:

@@ -91,12 +91,13 @@ def run(
     if band is not None:
         result = replace(result, **band.fields(case.loads))
     if interval is not None:
-        low, high = interval.ends(result.frequencies, free, bonded)
+        interval = replace(interval, free=free, bonded=bonded)
         result = replace(
             result,
             interval_sources=interval.sources,
-            interval_low=low,
-            interval_high=high,
+            interval_best=interval.best,
+            interval_low=interval.low,
+            interval_high=interval.high,
             interval_offsets=interval.offsets,
             mesh_error=None if mesh is None else mesh.total,
         )

@@ -11,6 +11,9 @@ from faying.cli.options import PATH, show
 from faying.cli.progress import Form, Shown, progress_options
 from faying.errors import InputError
 from faying.files import together
+from faying.notes import FIRST_NOTES
+
+MAX_LINES, MAX_ROWS = 36, 19  # of the answer on one screen of 40 lines, and of its table; the files take the rest
 
 
 @click.command()
@@ -19,6 +22,7 @@ from faying.files import together
     "--out", type=PATH, help="Folder for the results (default: results/ of study.toml, results/NAME/ of NAME.toml)."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--all", "everything", is_flag=True, help="Print all tables and notes, not the answer alone.")
 @click.option("--no-files", is_flag=True, help="Write no files, only print.")
 @click.option("--uff", is_flag=True, help="Write modes and frequency responses as universal files, too (.uff).")
 @click.option(
@@ -43,6 +47,7 @@ def command(
     study: Path,
     out: Path | None,
     as_json: bool,
+    everything: bool,
     no_files: bool,
     uff: bool,
     mpi: int | None,
@@ -75,36 +80,50 @@ def command(
             files = report.write(result, hidden)
             files += universal.write(result, hidden) if uff else []
             files = [folder / file.name for file in files]
-    show(as_json, result.to_dict, lambda: text(result), files, folder)
+    show(as_json, result.to_dict, lambda: text(result, everything=everything), files, folder)
 
 
-def text(result: Any) -> str:
-    """The tables and notes of a result for the terminal."""
-    from faying.notes import FIRST_NOTES, TITLES, by_severity, grave
-    from faying.output import answer, table
+def text(result: Any, *, everything: bool = True) -> str:
+    """The answer for the terminal, on one screen; or all tables and notes."""
+    from faying.notes import TITLES, by_severity, grave
+    from faying.output import table
     from faying.output.sections import sections
     from faying.output.terminal import wrapped
 
+    first, *others = ([*wrapped(one.above), *table.text(one.rows).splitlines(), ""] for one in sections(result))
+    hidden = 0 if everything else len(first) - 1 - MAX_ROWS  # a blank line is the last
+    if hidden > 0:
+        first[-1 - hidden :] = [f"{hidden} more modes with --all", ""]
     head = (
         f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
         f"{result.damping} loss in the joints"
     )
-    first, *others = (
-        "\n".join([*wrapped(section.above), table.text(section.rows), ""]) for section in sections(result)
-    )
-    every = grave(result.notes)
-    before = every[:FIRST_NOTES]
-    lines = [line for one in (answer.limit(result), answer.score_line(result)) if one for line in wrapped(one)]
-    lines += [line for note in before for line in _item(note.text)]
-    more = len(every) - len(before)
-    lines += [f"  {more} more at the end"] if more > 0 else []
-    notes = [
-        line
-        for kind, some in by_severity(result.notes, before).items()
-        for line in (f"\n{TITLES[kind]}", *(part for note in some for part in _item(note.text)))
-    ]
-    hammer = [] if result.hammer is None else [line for text in result.hammer.notes for line in _item(text)]
-    return "\n".join([*wrapped(head), "", first, *([*lines, ""] if lines else []), *others, *notes, *hammer])
+    lines = [*wrapped(head), "", *first, *_sentences(result)]
+    before: list[Any] = []
+    for note in grave(result.notes)[:FIRST_NOTES]:
+        item = _item(note.text)
+        if before and not everything and len(lines) + len(item) > MAX_LINES:
+            break
+        before.append(note)
+        lines += item
+    rest = len(grave(result.notes)) - len(before)
+    lines += [f"  {rest} more at the end"] if everything and rest > 0 else []
+    more = [line for one in others for line in one]
+    for kind, some in by_severity(result.notes, before).items():
+        more += ["", TITLES[kind], *(line for note in some for line in _item(note.text))]
+    more += [] if result.hammer is None else [line for note in result.hammer.notes for line in _item(note)]
+    if everything:
+        return "\n".join([*lines, "", *more] if more else lines)
+    return "\n".join([*lines, "faying run --all prints all tables and notes"] if more else lines)
+
+
+def _sentences(result: Any) -> list[str]:
+    """What stands below the answer: damping where it is one number, what limits the answer, how the test lies."""
+    from faying.output import answer
+    from faying.output.terminal import wrapped
+
+    every = (answer.damping_line(result), answer.limit(result), answer.score_line(result))
+    return [line for one in every if one for line in wrapped(one)]
 
 
 def _item(text: str) -> list[str]:

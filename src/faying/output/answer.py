@@ -6,44 +6,73 @@ from faying.case.scatter import SCATTER
 from faying.output.table import Rows, by_mode, damping_at
 from faying.result import Result
 from faying.result.interval import Interval
-from faying.result.run_record import preload_slope
+from faying.result.run_record import DampedLevels, preload_slope
 from faying.result.score import Score
 from faying.result.shape_names import part_and_axis
 from faying.typing import Array
 from faying.units import load_text
 
+SLIGHT_SLIP = 0.1  # of the damping at rest: what slip adds is less than a tenth of its spread
+SAME_REST = 1e-6  # relative difference of the damping at rest of two modes that is rounding
 MIN_GAIN = 5e-3  # by how much narrower an interval gets [-], below which the table would say 0 %
 
 
 def answer(result: Result) -> Rows:
-    """One row per mode at the greatest preload: its motion, frequency with interval, change with preload, damping."""
-    if result.interval_low is None or result.interval_high is None:
+    """One row per mode at the greatest preload: its motion, best estimate with interval, as modelled, and what follows.
+
+    That is the change with preload, and damping.
+    """
+    interval = result.interval
+    if interval is None:
         return []
-    several, damped = len(result.loads) > 1, result.at_levels
-    heads = ["mode", "moves most", f"{load_text(result.loads[-1])} [Hz]", "5 to 95 %"]
+    several, damped = len(result.loads) > 1, None if damping_line(result) else result.at_levels
+    heads = ["mode", "moves most", f"{load_text(result.loads[-1])} [Hz]", "5 to 95 %", "as modelled"]
     heads += ["Hz/kN"] * several
-    middle = 0 if damped is None else len(damped.levels) // 2
+    middle = 0 if damped is None else _middle(damped)
     heads += [] if damped is None else [f"damping, {damped.levels[middle]:g} m/s2 [%]"]
     rows: Rows = [heads]
     slopes = 1e3 * preload_slope(result.frequencies, result.loads) if several else np.zeros(len(result.bonded))
     for j in range(len(result.bonded)):
-        cells = [str(j + 1), moves(result, j), f"{result.frequencies[-1, j]:.2f}"]
-        cells.append(_interval(float(result.interval_low[-1, j]), float(result.interval_high[-1, j])))
+        low, best, high = (float(one[-1, j]) for one in (interval.low, interval.best, interval.high))
+        cells = [str(j + 1), moves(result, j), f"{best:.{_digits(low, high)}f}", _interval(low, high)]
+        cells.append(f"{result.frequencies[-1, j]:.2f}")
         cells += [f"{slopes[j]:+.0f}" if abs(slopes[j]) >= 100 else f"{slopes[j]:+.2g}"] * several
         cells += [] if damped is None else [damping_at(damped, middle, j)]
         rows.append(cells)
     return rows
 
 
+def _middle(damped: DampedLevels) -> int:
+    """The level that the answer shows."""
+    return len(damped.levels) // 2
+
+
+def damping_line(result: Result) -> str:
+    """Damping in a sentence where it is that at rest, and one for all modes; "" where it is not."""
+    damped = result.at_levels
+    if damped is None:
+        return ""
+    level = _middle(damped)
+    rest = (damped.damping - damped.slip)[-1, level]
+    if np.ptp(rest) > SAME_REST * rest.max() or not np.all(damped.slip[-1, level] < SLIGHT_SLIP * rest):
+        return ""
+    values = damping_at(damped, level, int(np.argmin(damped.slip[-1, level])))
+    return (
+        f"Damping at {damped.levels[level]:g} m/s2: {values} %, in every mode; slip of the joints adds less than a "
+        "tenth of that at rest."
+    )
+
+
 def lead(result: Result) -> str:
     """The answer in two or three sentences: the modes at the greatest preload, how the test lies, what limits it."""
-    f, load = result.frequencies[-1], load_text(result.loads[-1])
+    interval, load = result.interval, load_text(result.loads[-1])
+    f = result.frequencies[-1] if interval is None else interval.best[-1]
     if len(f) == 1:
         words = [f"At {load} the structure has one elastic mode of interest, at {_hertz(f[0])} Hz."]
     else:
         words = [f"At {load} the lowest {len(f)} elastic modes are from {_hertz(f[0])} to {_hertz(f[-1])} Hz."]
-    if result.interval_low is not None and result.interval_high is not None:
-        ends = _interval(float(result.interval_low[-1, 0]), float(result.interval_high[-1, 0])).replace("..", "and")
+    if interval is not None:
+        ends = _interval(float(interval.low[-1, 0]), float(interval.high[-1, 0])).replace("..", "and")
         words.append(f"The first is between {ends} Hz (5 to 95 %).")
     found = Score.of(result)
     return " ".join([*words, *_inside(found)])
@@ -62,8 +91,13 @@ def _hertz(f: float) -> str:
 
 def _interval(low: float, high: float) -> str:
     """Both ends to a tenth of their distance or so."""
-    digits = max(0, 1 - int(np.floor(np.log10(max(high - low, 1e-9)))))
+    digits = _digits(low, high)
     return f"{low:.{digits}f} .. {high:.{digits}f}"
+
+
+def _digits(low: float, high: float) -> int:
+    """Digits after the point that show a tenth of a distance."""
+    return max(0, 1 - int(np.floor(np.log10(max(high - low, 1e-9)))))
 
 
 def moves(result: Result, mode: int) -> str:

@@ -225,8 +225,8 @@ def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
 INTERVALS = ReportFigure(
     name="intervals",
     draw=interval_figure.intervals,
-    caption="Left: 5 to 95 % of each frequency at the greatest preload about the value as computed, and the test "
-    "where there is one. Right: what makes the interval, in shares of its variance.",
+    caption="Left: best estimate and 5 to 95 % of each frequency at the greatest preload about the value as modelled, "
+    "and the test where there is one. Right: what makes the interval, in shares of its variance.",
     applies=lambda result: result.interval is not None,
 )
 # chapter -> what stands in it, in order: names of tables and of curves that zoom, and the figures; the quantities that
@@ -326,7 +326,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
         ReportFigure(
             name="comparison",
             draw=_on_axes(structure.comparison),
-            caption="Difference of computed and published frequencies from the test. Bars: 5 to 95 % of the computed.",
+            caption="Difference of computed and published frequencies from the test. Bars: 5 to 95 %.",
             applies=lambda result: result.comparison is not None,
         ),
         "hammer",

@@ -147,7 +147,12 @@ def _against_preload(ax: Any, result: RunRecord, mode: int) -> None:
         band(ax, load, *ends, label="range of the law")
     else:
         ends = f, f
-    ax.plot(load, f, "o-" if len(load) > 1 else "D", color=COLOURS[0], ms=3, label="computed")
+    line = "o-" if len(load) > 1 else "D"
+    if result.interval is not None:
+        ax.plot(load, result.interval.best[:, mode], line, color=COLOURS[0], ms=3, label="best estimate")
+        ax.plot(load, f, ".:", color="black", ms=4, lw=1.0, label="as modelled")
+    else:
+        ax.plot(load, f, line, color=COLOURS[0], ms=3, label="as modelled")
     for k, name in enumerate(result.alternatives):
         if result.alternative_frequencies is not None:
             of_law = result.alternative_frequencies[k, :, mode]

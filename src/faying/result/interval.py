@@ -1,12 +1,13 @@
 """The interval of each frequency: what is not known, how far it moves the frequency, and what would narrow it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.style import Summary
 from faying.typing import Array
 
 OF_PARTS = ("mesh", "structure", "mode")  # sources that no stiffness of a joint bounds
@@ -14,17 +15,20 @@ MIN_SQUARE = 1e-300  # where nothing moves a frequency
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Interval:
-    """5 to 95 % of every frequency.
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Interval(Summary):
+    """Best estimate of every frequency, and its 5 to 95 %.
 
     Each source moves ln f by itself, to `offsets[:, 0]` at its 5 % and `offsets[:, 1]` at its 95 % end. Sources are
-    independent: their middles add, and so do the squares of their widths. Where a value that is assumed lies at an end
-    of what it may be, so does the frequency.
+    independent: their middles add to that of the whole, the best estimate, and the squares of their widths add. Where a
+    value that is assumed lies at an end of what it may be, so does the frequency as modelled.
 
     Args:
         sources: what is not known, s names.
         offsets: of ln f (s, 2, loads, modes).
+        frequencies: as modelled [Hz] (loads, modes), each assumed value as it is.
+        free, bonded: frequencies [Hz] (modes,) with the faces apart and bonded, which no stiffness of a joint passes;
+            what is not known of the parts does.
 
     Source:
         First-order propagation: JCGM 100:2008 (GUM), equation (10).
@@ -32,18 +36,38 @@ class Interval:
 
     sources: tuple[str, ...]
     offsets: Array
+    frequencies: Array
+    free: ArrayLike = 0.0
+    bonded: ArrayLike = np.inf
 
-    def ends(self, frequencies: Array, free: ArrayLike = 0.0, bonded: ArrayLike = np.inf) -> tuple[Array, Array]:
-        """5 and 95 % [Hz] of frequencies [Hz] (loads, modes).
+    @property
+    def low(self) -> Array:
+        """5 % [Hz] (loads, modes)."""
+        return self._at(-0.5)
 
-        free, bonded: frequencies [Hz] (modes,) with the faces apart and bonded, which no stiffness of a joint passes;
-        what is not known of the parts does.
-        """
+    @property
+    def best(self) -> Array:
+        """The best estimate, the median of all that is not known [Hz] (loads, modes)."""
+        return self._at(0.0)
+
+    @property
+    def high(self) -> Array:
+        """95 % [Hz] (loads, modes)."""
+        return self._at(0.5)
+
+    def _at(self, share: float) -> Array:
+        """Frequencies so many widths from the middle, between those of free and of bonded faces."""
         middle = self.offsets.mean(axis=1).sum(axis=0)
         of_parts = [k for k, name in enumerate(self.sources) if name in OF_PARTS]
         room = np.exp(np.sqrt(self._squares[of_parts].sum(axis=0)) / 2)
-        low = np.maximum(frequencies * np.exp(middle - self.width / 2), np.asarray(free) / room)
-        return low, np.minimum(frequencies * np.exp(middle + self.width / 2), np.asarray(bonded) * room)
+        found = self.frequencies * np.exp(middle + share * self.width)
+        return np.asarray(np.clip(found, np.asarray(self.free) / room, np.asarray(self.bonded) * room))
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return 5 %, the best estimate and 95 % of each mode at the greatest preload."""
+        ends = zip(self.low[-1], self.best[-1], self.high[-1], strict=True)
+        rows = {f"mode {k}": " .. ".join(f"{one:.4g}" for one in three) for k, three in enumerate(ends, 1)}
+        return "5 % .. best estimate .. 95 % [Hz] at the greatest preload", rows
 
     @property
     def _squares(self) -> Array:
@@ -68,4 +92,4 @@ class Interval:
         """
         factors = np.array([left.get(name, 1.0) for name in self.sources])[:, None, None, None]
         middle = self.offsets.mean(axis=1, keepdims=True)
-        return Interval(sources=self.sources, offsets=middle + (self.offsets - middle) * factors)
+        return replace(self, offsets=middle + (self.offsets - middle) * factors)

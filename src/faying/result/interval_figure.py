@@ -30,19 +30,21 @@ SOURCES = {
 def intervals(result: "Result") -> Any:
     """Return the figure of the intervals at the greatest preload.
 
-    Left: 5 to 95 % of each frequency over the value as computed, with the frequencies of the test and of bonded faces.
+    Left: best estimate and 5 to 95 % of each frequency over the value as modelled, with the frequencies of the test and
+    of bonded faces.
     Right: the share of each thing that is not known in the square of the width.
     """
     interval = result.interval
-    if interval is None or result.interval_low is None or result.interval_high is None:
+    if interval is None:
         raise InputError("the result has no intervals; run it with [modes] intervals = true")
     count = len(result.bonded)
     fig = new_figure(WIDE, 1.2 + 0.21 * count)
     left, right = fig.subplots(1, 2, sharey=True, gridspec_kw={"width_ratios": (1.35, 1)})
     value, y = result.frequencies[-1], np.arange(count)
-    low, high = (100 * (end[-1] / value - 1) for end in (result.interval_low, result.interval_high))
+    low, best, high = (100 * (one[-1] / value - 1) for one in (interval.low, interval.best, interval.high))
     left.barh(y, high - low, left=low, height=0.55, color=COLOURS[0], alpha=0.3, lw=0, label="5 to 95 %")
-    left.plot(np.zeros(count), y, "|", color="black", ms=9, mew=1.4, label="as computed")
+    left.plot(best, y, "o", color=COLOURS[0], ms=4, label="best estimate")
+    left.plot(np.zeros(count), y, "|", color="black", ms=9, mew=1.4, label="as modelled")
     left.plot(100 * (result.bonded / value - 1), y, "|", color=COLOURS[1], ms=9, mew=1.4, label="faces bonded")
     _test(left, result)
     shown = _shown(left, low, high)
@@ -50,9 +52,9 @@ def intervals(result: "Result") -> Any:
     if far:
         left.plot([shown[1]] * len(far), far, ">", color=COLOURS[1], ms=4, clip_on=False)
     left.set_xlim(shown)
-    left.set_yticks(y, [f"{k + 1}: {f:.0f} Hz" for k, f in enumerate(value)])
+    left.set_yticks(y, [f"{k + 1}: {f:.0f} Hz" for k, f in enumerate(interval.best[-1])])
     left.invert_yaxis()
-    left.set_xlabel("difference from the value as computed [%]")
+    left.set_xlabel("difference from the value as modelled [%]")
     left.set_ylabel(f"mode at {load_text(result.loads[-1])}")
     left.grid(axis="x", alpha=0.3)
     before = np.zeros(count)

@@ -218,6 +218,9 @@ class RunRecord(Recorded):
         "modes/frequency_high",
         shown="high",
     )
+    interval_best: Array | None = optional(
+        "load mode", "Hz", "best estimate of the frequency, the median of all that is not known", "modes/", shown="best"
+    )
     interval_low: Array | None = optional(
         "load mode", "Hz", "5 % of the frequency, of all that is not known", "modes/", shown="5 %"
     )
@@ -461,10 +464,16 @@ class RunRecord(Recorded):
 
     @property
     def interval(self) -> Interval | None:
-        """What makes the interval of each frequency; None in a result without one."""
+        """Best estimate and interval of each frequency, and what makes it; None in a result without one."""
         if self.interval_offsets is None:
             return None
-        return Interval(sources=self.interval_sources, offsets=self.interval_offsets)
+        return Interval(
+            sources=self.interval_sources,
+            offsets=self.interval_offsets,
+            frequencies=self.frequencies,
+            free=self.free,
+            bonded=self.bonded,
+        )
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
