@@ -14,7 +14,7 @@ from faying.microslip.epmc import Epmc
 from faying.output import table
 from faying.output.sections import sections
 from faying.result import Result
-from faying.result.backbone_figure import label
+from faying.result.backbone import label
 from faying.study import Study
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.law import LawChoice

@@ -52,7 +52,7 @@ def command(study: Path, **options: Any) -> None:
     from faying.backbones.backbone import backbones
     from faying.backbones.choice import names
     from faying.measured.ring_down import MeasuredBackbone
-    from faying.result import backbone_figure as drawing
+    from faying.result import backbone as drawing
     from faying.study import Study
     from faying.style import check_figure, save
 

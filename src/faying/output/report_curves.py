@@ -7,8 +7,7 @@ import numpy as np
 
 from faying.output.scene.text import packed_backbones, packed_curves
 from faying.result import Result
-from faying.result.backbone import Backbone
-from faying.result.backbone_figure import ROUNDING, label
+from faying.result.backbone import ROUNDING, Backbone, label
 from faying.result.response_figure import words
 from faying.units import in_mm, load_text
 
