@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.backbones import store as backbone_store
+from faying.backbones import backbone as backbone_store
 from faying.errors import InputError
 from faying.joint.joint import FittedJoint
 from faying.microslip.epmc import Epmc
@@ -134,8 +134,7 @@ def test_preload_stiffens_and_holds(study):
 
 
 def test_loads_share_a_basis(study):
-    from faying.backbones.backbone import backbones
-    from faying.backbones.choice import chosen
+    from faying.backbones.backbone import backbones, chosen
 
     choice = chosen(study, 0.2, {"amplitude": RANGE, "harmonics": 1})
     loose, tight = backbones(study, choice)

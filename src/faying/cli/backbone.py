@@ -49,8 +49,7 @@ def command(study: Path, **options: Any) -> None:
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
-    from faying.backbones.backbone import backbones
-    from faying.backbones.choice import names
+    from faying.backbones.backbone import backbones, names
     from faying.measured.ring_down import MeasuredBackbone
     from faying.result import backbone as drawing
     from faying.study import Study
@@ -114,7 +113,7 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
 
 def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     """The choice of the study with the options in place of it, and the indices of its loads."""
-    from faying.backbones.choice import chosen
+    from faying.backbones.backbone import chosen
     from faying.checks import plain
     from faying.joint.preload_case import preload_index
     from faying.study.keys.backbone import accelerations, laws
