@@ -55,7 +55,7 @@ def study_of(name, steps, folder, as_proposed):
 
 def measured(toml):
     """Numbers that are said of a study and found by its run."""
-    from faying.units import si
+    from faying.units import parse
 
     text, check_seconds, _ = used([sys.executable, "-m", "faying", "check", str(toml), "--json"])
     said = json.loads(text)
@@ -73,7 +73,7 @@ def measured(toml):
             for one in said["findings"]
             if one["text"].startswith(f"joint '{joint}'") and " press " in one["text"]
         )
-        pressures[joint] = si(re.search(r" press ([\d.]+ \w+) on it", line)[1], "Pa"), mean
+        pressures[joint] = parse(re.search(r" press ([\d.]+ \w+) on it", line)[1], "Pa"), mean
     expected = said["expected"]
     return {
         "check": check_seconds,

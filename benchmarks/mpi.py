@@ -18,17 +18,19 @@ SIZES = {20: (16, (7, 3)), 60: (22, (10, 5)), 200: (34, (15, 7)), 500: (46, (21,
 
 
 def row(size, processes, alone):
-    from faying.mpi.modes import modes_over_mpi
+    from faying.export.modes_over_mpi import modes_over_mpi
     from faying.numerics.modes import lowest_modes
 
     layers, section = SIZES[size]
     mesh = structures.bar(layers=(layers, layers), section=section)
-    K, M = structures.coupled(mesh)
+    K, M = structures.joined(mesh)
     shift = structures.shift_frequency(mesh)
-    found = modes_over_mpi(K, M, structures.MODES, shift_frequency=shift, processes=processes, points=mesh.points)
-    cpu, peak = (", ".join(f"{value:.3g}" for value in values) for values in (found.cpu, found.peak / 1e9))
+    found, solver = modes_over_mpi(
+        K, M, structures.MODES, shift_frequency=shift, processes=processes, points=mesh.points
+    )
+    cpu, peak = (", ".join(f"{value:.3g}" for value in values) for values in (solver.cpu, solver.peak / 1e9))
     print(
-        f"| {K.shape[0]:,} | {found.iterations} | {cpu} s | {peak} GB | {found.error.max() / 2:.1e} ",
+        f"| {K.shape[0]:,} | {solver.solutions} | {solver.steps} | {cpu} s | {peak} GB | {found.error.max() / 2:.1e} ",
         end="",
         flush=True,
     )
@@ -53,10 +55,10 @@ def main():
     given = ask.parse_args()
     structures.K_N, structures.K_T = given.stiffness, given.stiffness / 2
     print(
-        "| unknowns | iterations | CPU of each process | peak of each | estimated error | against direct "
+        "| unknowns | solutions | iterations | CPU of each process | peak of each | estimated error | against direct "
         "| direct, CPU | its factor |"
     )
-    print("|---|---|---|---|---|---|---|---|")
+    print("|---|---|---|---|---|---|---|---|---|")
     for size in given.sizes:
         row(size, given.processes, given.alone)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 import faying
 from faying.measured.ring_down import MeasuredBackbone
-from faying.result.backbone_figure import panel
+from faying.result.backbone import panel
 from faying.style import new_figure, save
 
 HERE = Path(__file__).parent

@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeVar
 from faying.errors import InputError, shown
 from faying.units import EXAMPLES, parse
 
-__all__ = ["choice", "flag", "instance", "number", "path", "real", "several", "shown", "text", "whole"]
+__all__ = ["choice", "flag", "instance", "number", "path", "plain", "real", "several", "shown", "text", "whole"]
 
 Kind = TypeVar("Kind")
 
@@ -60,7 +60,30 @@ def number(
     high = out <= greatest if ends[1] == "]" else out < greatest
     if not (isfinite(out) and low and high):
         allowed = _range(least, greatest, ends)
-        raise InputError(f"{name} = {out:.12g}{f' {unit}' if unit else ''}; it must be {allowed}")
+        given = f'"{value}"' if isinstance(value, str) else f"{out:.12g}{f' {unit}' if unit else ''}"
+        raise InputError(f"{name} = {given}; it must be {allowed}")
+    return out
+
+
+def plain(value: object, name: str, or_words: str = "", *, as_text: bool = True) -> float:
+    """Return a plain finite number as a float.
+
+    Args:
+        value: the number.
+        name: what the error calls it.
+        or_words: what else is allowed, as the error says it after the example.
+        as_text: whether it may be written as text.
+
+    Raises:
+        InputError: for anything else, True and False included.
+    """
+    kinds = int | float | str if as_text else int | float
+    try:
+        out = float(value) if isinstance(value, kinds) and not isinstance(value, bool) else inf
+    except (ValueError, OverflowError):
+        out = inf
+    if not isfinite(out):
+        raise InputError(f"{name} = {shown(value)} should be a plain finite number, for example 0.3{or_words}")
     return out
 
 

@@ -5,13 +5,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from functools import cached_property
-from math import exp, inf, isfinite, log, nan, nextafter, sqrt
+from math import exp, inf, isfinite, log, nextafter, sqrt
 from typing import Any, Literal, Self, final
 
 import numpy as np
 
 from faying import units
-from faying.checks import real, text
+from faying.checks import plain, real, text
 from faying.errors import InputError, shown
 from faying.typing import Array
 
@@ -313,17 +313,7 @@ def _forms(unit: str) -> str:
 
 def _number(value: object, unit: str, name: str) -> float:
     """One quantity in SI, or one plain number."""
-    if unit:
-        return units.parse(value, unit, name=name)
-    try:
-        if isinstance(value, bool) or not isinstance(value, int | float | str):
-            raise ValueError
-        out = float(value)
-    except ValueError:
-        out = nan
-    if not isfinite(out):
-        raise InputError(f"{name} = {shown(value)} should be a plain finite number, for example 0.3")
-    return out
+    return units.parse(value, unit, name=name) if unit else plain(value, name)
 
 
 def _of_text(value: object, unit: str, name: str) -> dict[str, Any]:

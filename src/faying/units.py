@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterable
 from functools import cache
 from math import isfinite
-from numbers import Real
 from typing import Any
 
 from faying.errors import InputError, shown
@@ -131,40 +130,6 @@ def parse(text: object, unit: str, *, name: str = "value") -> float:
     if not isfinite(number * factor):
         raise InputError(f"{name} = {_short(text)} is not a finite number; {example}")
     return number * factor
-
-
-def si(value: object, unit: str, *, name: str = "value") -> float:
-    """Return a quantity that is given as text with its unit, or as a number in the SI unit `unit`.
-
-    Args:
-        value: for example "5 MPa", or 5e6.
-        unit: the SI unit that is wanted.
-        name: what the error calls the quantity.
-
-    Raises:
-        InputError: as `parse`, and for anything that is neither text nor a finite number.
-    """
-    if isinstance(value, str):
-        return parse(value, unit, name=name)
-    try:
-        # bytes and arrays of one value would pass as numbers
-        number = float("nan") if isinstance(value, bool) or not isinstance(value, Real) else float(value)
-    except OverflowError:
-        number = float("inf")
-    if not isfinite(number):
-        example = EXAMPLES.get(unit, f"1 {unit}")
-        raise InputError(
-            f'{name} = {_short(value)}; give text with a unit, for example "{example}", or a number in {unit}'
-        )
-    return number
-
-
-def positive(value: object, unit: str, name: str) -> float:
-    """A quantity that `si` reads and that is above 0. Raises InputError otherwise."""
-    number = si(value, unit, name=name)
-    if number <= 0:
-        raise InputError(f"{name} = {_short(value)}; it must be positive")
-    return number
 
 
 def _short(text: object) -> str:

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import faying
-from faying.backbones import store as backbone_store
+from faying.backbones import backbone as backbone_store
 from faying.errors import InputError
 from faying.joint.joint import FittedJoint
 from faying.microslip.epmc import Epmc
 from faying.output import table
 from faying.output.sections import sections
 from faying.result import Result
-from faying.result.backbone_figure import label
+from faying.result.backbone import label
 from faying.study import Study
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.keys.law import LawChoice
@@ -134,8 +134,7 @@ def test_preload_stiffens_and_holds(study):
 
 
 def test_loads_share_a_basis(study):
-    from faying.backbones.backbone import backbones
-    from faying.backbones.choice import chosen
+    from faying.backbones.backbone import backbones, chosen
 
     choice = chosen(study, 0.2, {"amplitude": RANGE, "harmonics": 1})
     loose, tight = backbones(study, choice)

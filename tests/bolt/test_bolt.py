@@ -202,7 +202,7 @@ def test_bolts_against_a_fixed_plate_in_closed_form():
     ("given", "text"),
     [
         ({"material": None}, "needs both diameter and material, or neither"),
-        ({"diameter": -1.0}, "diameter = -1.0; it must be positive"),
+        ({"diameter": -1.0}, "diameter = -1 m; it must be positive"),
         ({"seat": (16e-3, 8e-3)}, "inner diameter must be less than its outer"),
         ({"faces": ("low.top", "high.bottom")}, "do not look away from each other"),
         ({"faces": ("high.top", "low.left")}, "do not look away from each other"),

@@ -8,7 +8,7 @@ from scipy.io import mmwrite
 from scipy.sparse import load_npz
 
 from faying.cli import main
-from faying.mpi.modes import TOLERANCE
+from faying.numerics.modal_reanalysis import REFINED
 from tests.helpers.mpi import mpi as mpi
 from tests.helpers.studies import write
 
@@ -106,7 +106,7 @@ def test_over_two_processes(exported, capsys, mpi):
     assert "iterations; memory of the 2 processes" in costs
     over = np.array([float(line.split()[1]) for line in lines])
     assert np.all(over[:6] < 1)
-    assert over[6:] == pytest.approx(direct[6:], rel=TOLERANCE / 2)
+    assert over[6:] == pytest.approx(direct[6:], rel=REFINED / 2)
 
 
 def test_faults_of_points(exported, capsys, tmp_path):

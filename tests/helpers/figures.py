@@ -15,10 +15,10 @@ from faying.distribution import Distribution
 from faying.form.figure import figure as form
 from faying.form.fit import fit_form
 from faying.halfspace import figure as half_space
-from faying.identify import prediction_figure as predicting
+from faying.identify import prediction as predicting
 from faying.identify.backbones import Backbones
-from faying.identify.identification_figure import figure as identification
-from faying.identify.identification_figure import identification_axes
+from faying.identify.identification import figure as identification
+from faying.identify.identification import identification_axes
 from faying.identify.identify import identify_model
 from faying.identify.noise import Losses
 from faying.identify.prediction import Prediction
@@ -33,8 +33,8 @@ from faying.measured.modes import ModeSet
 from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
-from faying.result import Receptance, backbone_figure, difference_figure
-from faying.result.backbone_record import QuasiStaticCheck
+from faying.result import Receptance, backbone, difference_figure
+from faying.result.backbone import QuasiStaticCheck
 from faying.result.difference import compare_runs
 from faying.result.interval import Interval
 from faying.result.run_record import MeasuredComparison
@@ -358,7 +358,7 @@ def level_curves():
 
 
 def two_curves():
-    return backbone_figure.figure([curve(), replace(curve(), friction=(0.4,))], [measured_points()])
+    return backbone.figure([curve(), replace(curve(), friction=(0.4,))], [measured_points()])
 
 
 FIGURES = {
@@ -366,9 +366,9 @@ FIGURES = {
     **{f"output/report_measured.py:{name}": (lambda name=name: of_test(name)) for name in ("mac", "frf", "shapes")},
     "docs/gallery/front_page.py:draw": lambda: script("front_page").draw(result()),
     "result/figure.py:frequency_axes": lambda: whole(result().plot()),
-    "result/backbone_figure.py:figure": two_curves,
-    "result/backbone_figure.py:backbone_axes": lambda: whole(curve().plot()),
-    "result/backbone_figure.py:measured": lambda: backbone_figure.measured(measured_points()),
+    "result/backbone.py:figure": two_curves,
+    "result/backbone.py:backbone_axes": lambda: whole(curve().plot()),
+    "result/backbone.py:measured": lambda: backbone.measured(measured_points()),
     "answer/level_curves.py:plot": lambda: whole(level_curves().plot()),
     "result/difference_figure.py:differences": lambda: difference_figure.differences(
         compare_runs(result(), two_boxes(names=("flange_1",)))
@@ -397,11 +397,11 @@ FIGURES = {
     "surface/figure.py:fit_plot": lambda: whole(scan().fractal().plot()),
     "surface/figure.py:overview_figure": lambda: overview(scan()),
     "surface/figure.py:overview_figure, profile": lambda: overview(scan().profile("x", 3)),
-    "identify/prediction_figure.py:intervals": lambda: predicting.intervals(prediction()),
-    "identify/prediction_figure.py:interval_axes": lambda: whole(prediction().plot()),
-    "identify/prediction_figure.py:tornado": lambda: predicting.tornado(prediction()),
-    "identify/prediction_figure.py:scatter_matrix": lambda: predicting.scatter_matrix(prediction()),
-    "identify/prediction_figure.py:backbones": lambda: predicting.backbones(prediction()),
-    "identify/identification_figure.py:figure": lambda: identification(found()),
-    "identify/identification_figure.py:identification_axes": lambda: whole(identification_axes(found())),
+    "identify/prediction.py:intervals": lambda: predicting.intervals(prediction()),
+    "identify/prediction.py:interval_axes": lambda: whole(prediction().plot()),
+    "identify/prediction.py:tornado": lambda: predicting.tornado(prediction()),
+    "identify/prediction.py:scatter_matrix": lambda: predicting.scatter_matrix(prediction()),
+    "identify/prediction.py:backbones": lambda: predicting.backbones(prediction()),
+    "identify/identification.py:figure": lambda: identification(found()),
+    "identify/identification.py:identification_axes": lambda: whole(identification_axes(found())),
 }

@@ -1,4 +1,4 @@
-"""Whether SLEPc over MPI is here, and an environment in which Open MPI starts wherever tests run."""
+"""Whether PETSc over MPI is here, and an environment in which Open MPI starts wherever tests run."""
 
 import shutil
 import stat
@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 import faying
-from faying.mpi.modes import programs
+from faying.mpi.over_mpi import programs
 
 
 @cache

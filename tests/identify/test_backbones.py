@@ -16,7 +16,7 @@ from faying.cli import main
 from faying.errors import InputError
 from faying.form.form import Form
 from faying.identify import predict as module
-from faying.identify import prediction_figure as drawing
+from faying.identify import prediction as drawing
 from faying.identify.backbones import Backbones
 from faying.identify.prediction import Prediction
 from faying.identify.sampling import follow

@@ -10,9 +10,7 @@ import faying
 from faying.distribution import Distribution
 from faying.errors import InputError, ReadError
 from faying.identify.fit import Identifiability
-from faying.identify.identification import Identification
-from faying.identify.identification_figure import figure
-from faying.identify.identification_record import mixed, weights_of
+from faying.identify.identification import Identification, figure, mixed, weights_of
 from faying.identify.identify import identify_model
 from faying.identify.noise import DISCREPANCY_SD, TEST_SD, Losses, offsets
 from faying.identify.sampling.emulator import Emulator

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import block_diag, csr_array, kron, random_array
 
-from faying.mpi.partition import bisected, rows_of_pieces, write_pieces
+from faying.mpi.partition import bisected, rows_of_pieces, write_operator, write_points
 from faying.numerics.shifted import Shifted
 
 
@@ -30,26 +30,28 @@ def test_without_coordinates_pieces_are_ranges():
 
 @pytest.mark.parametrize("known", [True, False])
 def test_pieces_put_together_are_the_whole(tmp_path, known):
-    """Read back as a process would, with the numbering undone, they are K + s M and M over the mean mass."""
+    """Read back as a process would, with the numbering undone, they are K + s M and the nodes."""
     nodes = 50
     half = csr_array(random_array((3 * nodes, 3 * nodes), density=0.05, rng=np.random.default_rng(3)))
     K, M = (half @ half.T).tocsr(), csr_array(kron(block_diag([np.diag(np.arange(1.0, 51))]), np.eye(3)))
     points = np.random.default_rng(4).uniform(-1, 5, size=(nodes, 3)) if known else None
     rows = rows_of_pieces(3 * nodes, points, 4)
-    write_pieces(tmp_path, Shifted(stiffness=K, mass=M, shift=7.0), points, rows)
+    for number in range(4):
+        (tmp_path / str(number)).mkdir()
+    write_operator(tmp_path, Shifted(stiffness=K, mass=M, shift=7.0), rows)
     order = np.concatenate(rows)
-    for name, wanted in (("operator", K + 7.0 * M), ("mass", M)):
-        got = np.zeros((3 * nodes, 3 * nodes))
-        first = 0
-        for number in range(4):
-            starts, columns, values = (
-                np.load(tmp_path / str(number) / f"{name}_{what}.npy") for what in ("starts", "columns", "values")
-            )
-            piece = csr_array((values, columns, starts), shape=(len(starts) - 1, 3 * nodes)).toarray()
-            got[first : first + len(piece)] = piece
-            first += len(piece)
-        assert got == pytest.approx(wanted.toarray()[np.ix_(order, order)] / M.diagonal().mean(), rel=1e-14)
+    got = np.zeros((3 * nodes, 3 * nodes))
+    first = 0
+    for number in range(4):
+        starts, columns, values = (
+            np.load(tmp_path / str(number) / f"operator_{what}.npy") for what in ("starts", "columns", "values")
+        )
+        piece = csr_array((values, columns, starts), shape=(len(starts) - 1, 3 * nodes)).toarray()
+        got[first : first + len(piece)] = piece
+        first += len(piece)
+    assert got == pytest.approx((K + 7.0 * M).toarray()[np.ix_(order, order)], rel=1e-14)
     if points is not None:
+        write_points(tmp_path, points, rows)
         placed = np.concatenate([np.load(tmp_path / str(number) / "points.npy") for number in range(4)])
         assert np.ptp(placed, axis=0).max() == pytest.approx(1.0)
         same = points[order[::3] // 3]

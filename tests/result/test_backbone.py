@@ -5,8 +5,7 @@ import pytest
 
 import faying
 from faying.errors import InputError, ReadError
-from faying.result.backbone import Backbone
-from faying.result.backbone_record import ErrorBounds
+from faying.result.backbone import Backbone, ErrorBounds
 from tests.helpers.backbones import made
 
 LINEAR = made(frequency=100.0, damping=0.01)

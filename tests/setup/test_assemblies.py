@@ -16,7 +16,7 @@ from faying.geometry.cad import read_parts
 from faying.setup import new
 from faying.setup.check import check
 from faying.study import Study
-from faying.units import si
+from faying.units import parse
 from tests.helpers import assemblies
 from tests.helpers.proposed import proposed
 
@@ -150,7 +150,7 @@ def test_run_carries_the_preload_between_free_and_bonded(made, name):
         (said,) = [
             one["text"] for one in findings if one["text"].startswith(f"joint '{joint}'") and " press " in one["text"]
         ]
-        pressure = si(re.search(r" press ([\d.]+ \w+) on it", said)[1], "Pa")
+        pressure = parse(re.search(r" press ([\d.]+ \w+) on it", said)[1], "Pa")
         assert pressure == pytest.approx(mean, rel=0.3)
     assert np.all(found.free <= found.frequencies[0] * (1 + 1e-6))
     assert np.all(found.frequencies[0] <= found.bonded * (1 + 1e-6))

@@ -71,7 +71,7 @@ def test_the_template_is_a_study(folder):
         ({"joint__0__faces": ["a"]}, "should be a list of 2 names"),
         ({"joint__0__springs": "per-atom"}, "should be one of per-area, per-node"),
         ({"law__closure": "wrong"}, 'allowed is "consistent" or "printed"'),
-        ({"law__substrate": "soft"}, "law.substrate = 'soft' should be a plain number"),
+        ({"law__substrate": "soft"}, "law.substrate = 'soft' should be a plain finite number"),
         ({"modes__count": 0}, "whole number from 1 to"),
         ({"bolt": None}, r"\[\[bolt\]\] is missing"),
         ({"part": None}, r"\[part\] is missing"),

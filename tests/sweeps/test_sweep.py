@@ -227,7 +227,7 @@ def test_values_of_an_axis():
         ("bolt.preload=1:20:30", "give the unit|unit"),
         ("surface.D=2.2:2.6:1", "whole number from 2 to"),
         ("surface.D=2.2:2.2:3", "ends must differ"),
-        ("surface.D=a,b", "should be a plain number"),
+        ("surface.D=a,b", "should be a plain finite number"),
         ("surface.D=2.2:2.6", "first:last:count"),
     ],
 )

@@ -19,8 +19,7 @@ from faying.loads.record import LoadCases, LoadIntervals
 from faying.materials import CATALOGUE
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse
-from faying.result.backbone import Backbone
-from faying.result.backbone_record import QuasiStaticCheck
+from faying.result.backbone import Backbone, QuasiStaticCheck
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
 from faying.result.result import Result

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.answer.run import run
-from faying.backbones.choice import chosen, friction_of
+from faying.backbones.backbone import chosen, friction_of
 from faying.case.case import bare
 from faying.errors import InputError
 from faying.files import write_text

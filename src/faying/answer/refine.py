@@ -4,11 +4,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from faying.case.mesh_error import size_for
+from faying.checks import number
 from faying.errors import InputError
 from faying.notes import Note
 from faying.result import Result
 from faying.study.study import Study
-from faying.units import si
+from faying.units import parse
 
 MAX_RUNS = 5  # of one study: each takes several times the one before
 AT_ONCE = 0.5  # least ratio of two sizes: an estimate on a coarse mesh may be too large
@@ -20,7 +21,7 @@ def tolerance_of(value: str | float) -> float:
     """A tolerance [-] from a number or a text such as "0.2 %". Raises InputError outside `RANGE`."""
     if isinstance(value, str) and value.strip().endswith("%"):
         value = value.strip()[:-1].strip() + " %"
-    found = si(value, "", name="refine")
+    found = parse(value, "", name="refine") if isinstance(value, str) else number(value, "refine")
     if not RANGE[0] <= found <= RANGE[1]:
         raise InputError(
             f'refine = {value!r}: the estimated error of a frequency to reach, from 0.001 % to 10 %; write "0.2 %"'
@@ -48,15 +49,15 @@ def refined(study: Study, tolerance: float, run: Callable[[Study], Result]) -> R
             "program that it comes from, or give geometry.step"
         )
     study = replace(study, modes=replace(study.modes, intervals=True))
-    for number in range(1, MAX_RUNS + 1):
+    for count in range(1, MAX_RUNS + 1):
         result = run(study)
         error = 0.0 if result.mesh_error is None else float(result.mesh_error.max())
-        if error <= tolerance or number == MAX_RUNS:
+        if error <= tolerance or count == MAX_RUNS:
             break
         study = _finer(study, min(max(size_for(1.0, error, tolerance), AT_ONCE), MAX_SIZE_RATIO))
     words = "is" if error <= tolerance else f"after {MAX_RUNS} meshes is still"
     text = (
-        f"elements of {1e3 * study.geometry.size:.3g} mm, and {number} mesh{'es' * (number > 1)}, for --refine: the "
+        f"elements of {1e3 * study.geometry.size:.3g} mm, and {count} mesh{'es' * (count > 1)}, for --refine: the "
         f"estimated error of the mesh {words} {100 * error:.2g} % at most, where {100 * tolerance:.2g} % was asked"
     )
     code = "mesh-refined" if error <= tolerance else "mesh-error"

@@ -12,8 +12,7 @@ from faying.answer.findings import against_exact_contact, falling
 from faying.answer.interval import intervals
 from faying.answer.refine import refined, tolerance_of
 from faying.answer.tracks import compared, encounters, macs, shapes_of
-from faying.backbones.backbone import backbones_of
-from faying.backbones.choice import friction_of
+from faying.backbones.backbone import backbones_of, friction_of
 from faying.bolt.bolt import FittedBolt
 from faying.case.alternative import Alternative, alternative_fields, solve_alternative
 from faying.case.bounds import bounds

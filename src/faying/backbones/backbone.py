@@ -1,15 +1,13 @@
 """From a study to the frequency and damping of a mode against its amplitude."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Literal, overload
 
 import numpy as np
 
-from faying.backbones.choice import chosen, friction_of, names
 from faying.backbones.result import BackboneCurve, collected
-from faying.backbones.store import CurveStore
 from faying.case.alternative import changed, study_with
 from faying.case.case import Case, checked_laws, law_reasons, read_for, surfaces_of
 from faying.errors import InputError
@@ -30,9 +28,9 @@ from faying.numerics.modes import Modes
 from faying.progress import Report
 from faying.result.backbone import Backbone
 from faying.study.keys.alternative import AlternativeChoice
-from faying.study.keys.backbone import BackboneChoice, Point, laws
+from faying.study.keys.backbone import BackboneChoice, Point, check_friction, laws
 from faying.study.keys.law import LawChoice
-from faying.study.part_folder import fingerprint
+from faying.study.part_folder import PartFile, fingerprint
 from faying.study.study import Study
 from faying.typing import Array
 from faying.units import in_mm
@@ -47,6 +45,92 @@ SPENT = 0.05  # residual, in energy, at which a basis is spent
 MIN_MOTION = 1e-3  # of the greatest motion: a point that moves less says nothing of the mode
 
 STEPS = 1000  # of its progress
+
+LISTS = ("sliding", "opening", "dissipated", "traction")  # one array for each joint
+
+
+class CurveStore(PartFile):
+    """The folder OUT.part beside the output; without an output nothing is kept."""
+
+    def __init__(self, out: Path | None, fingerprint: str) -> None:
+        super().__init__(out, fingerprint, what="backbone")
+
+    def basis(self) -> Array | None:
+        """The vectors that were kept, None where there are none."""
+        found = self.arrays("basis")
+        return None if found is None else found.get("vectors")
+
+    def keep_basis(self, vectors: Array) -> None:
+        """Keep the basis in which the points are."""
+        self.keep_arrays("basis", {"vectors": vectors})
+
+    def points(self, curve: int) -> list[EpmcPoint]:
+        """The points of a curve that were kept, in rising amplitude, up to the first that is damaged."""
+        out: list[EpmcPoint] = []
+        while (found := self.arrays(_name(curve, len(out)))) is not None:
+            point = _point(found)
+            if point is None:
+                break
+            out.append(point)
+        return out
+
+    def keep(self, curve: int, number: int, point: EpmcPoint) -> None:
+        """Keep one point of a curve."""
+        arrays: dict[str, Any] = {}
+        for f in fields(point):
+            value = getattr(point, f.name)
+            if f.name in LISTS:
+                arrays |= {f"{f.name}.{k}": part for k, part in enumerate(value)}
+            else:
+                arrays[f.name] = value
+        self.keep_arrays(_name(curve, number), arrays)
+
+
+def _name(curve: int, number: int) -> str:
+    return f"curve-{curve}-{number:04d}"
+
+
+def _point(found: dict[str, Any]) -> EpmcPoint | None:
+    given: dict[str, Any] = {}
+    try:
+        for f in fields(EpmcPoint):
+            if f.name in LISTS:
+                count = sum(name.startswith(f"{f.name}.") for name in found)
+                given[f.name] = tuple(found[f"{f.name}.{k}"] for k in range(count))
+            else:
+                given[f.name] = found[f.name] if f.name == "coordinates" else float(found[f.name])
+    except KeyError:
+        return None
+    return EpmcPoint(**given)
+
+
+def chosen(study: Study, friction: float | Sequence[float] | None, asked: dict[str, Any]) -> BackboneChoice:
+    """[backbone] of the study with what is asked for in place of it."""
+    given = {name: value for name, value in asked.items() if value is not None}
+    if friction is not None:
+        given["friction"] = tuple(friction) if isinstance(friction, Sequence) else (friction,)
+    return replace(study.backbone or BackboneChoice(), **given)
+
+
+def names(out: Path, count: int) -> list[Path]:
+    """The files of several curves: numbered, but for one alone."""
+    return [out] if count == 1 else [out.with_name(f"{out.stem}-{k + 1}{out.suffix}") for k in range(count)]
+
+
+def friction_of(study: Study, choice: BackboneChoice) -> list[tuple[float, ...]]:
+    """Coefficient of each joint for each curve. Raises InputError where a joint has none."""
+    if choice.friction:
+        return [(value,) * len(study.joints) for value in choice.friction]
+    own: list[float] = []
+    for joint in study.joints:
+        if joint.friction is None:
+            raise InputError(
+                f"joint {joint.name!r} has no friction, and without it nothing slips; give friction = 0.2 "
+                "(--friction 0.2), or friction in its [[joint]] or in [backbone]"
+            )
+        check_friction(joint.friction)
+        own.append(joint.friction)
+    return [tuple(own)]
 
 
 @overload

@@ -17,8 +17,7 @@ from faying.microslip.epmc import Epmc, EpmcCurve, EpmcPoint
 from faying.microslip.slip_basis import SlipBasis
 from faying.microslip.slip_cycle import nearest, static_cycle
 from faying.notes import Note
-from faying.result.backbone import Backbone
-from faying.result.backbone_record import ErrorBounds, QuasiStaticCheck
+from faying.result.backbone import Backbone, ErrorBounds, QuasiStaticCheck
 from faying.study.keys.backbone import BackboneChoice
 from faying.typing import Array
 

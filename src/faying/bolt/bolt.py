@@ -11,6 +11,7 @@ import numpy as np
 from faying.bolt.compliance import HEADS, BoltSection, Head, bolt_sections
 from faying.bolt.tapped import INSIDE, RoundHole, engaged_length, round_hole
 from faying.bolt.threads import THICKEST, THINNEST, Fastener, Thread
+from faying.checks import number
 from faying.errors import InputError
 from faying.fe.attach import DepthBand, Ring, mean_motion
 from faying.fe.elasticity import Solid
@@ -21,7 +22,7 @@ from faying.materials import material_of
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.typing import Array
-from faying.units import positive, show, si
+from faying.units import show
 
 # proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
 ACROSS_FLATS, HEAD_HEIGHT, NUT_HEIGHT = 1.5, 0.64, 0.85
@@ -84,9 +85,9 @@ class Washer:
         self, *, outer: float | str, inner: float | str, thickness: float | str, material: Solid | str
     ) -> None:
         values = {
-            "outer": positive(outer, "m", "washer: outer"),
-            "inner": positive(inner, "m", "washer: inner"),
-            "thickness": positive(thickness, "m", "washer: thickness"),
+            "outer": number(outer, "washer: outer", "m", least=0),
+            "inner": number(inner, "washer: inner", "m", least=0),
+            "thickness": number(thickness, "washer: thickness", "m", least=0),
             "material": solid_of(material, "washer"),
         }
         for name, value in values.items():
@@ -195,17 +196,17 @@ class Bolt:
         values = {
             "name": name,
             "faces": (faces[0], faces[1]),
-            "at": None if at is None else tuple(si(x, "m", name=f"{what}: at") for x in at),
-            "diameter": None if diameter is None else positive(diameter, "m", f"{what}: diameter"),
+            "at": None if at is None else tuple(number(x, f"{what}: at", "m") for x in at),
+            "diameter": None if diameter is None else number(diameter, f"{what}: diameter", "m", least=0),
             "material": None if material is None else solid_of(material, what),
-            "seat": None if seat is None else tuple(si(d, "m", name=f"{what}: seat") for d in seat),
+            "seat": None if seat is None else tuple(number(d, f"{what}: seat", "m") for d in seat),
             "washers": tuple(washers),
             "head_mass": None if head_mass is None else _mass(head_mass, f"{what}: head_mass"),
             "nut_mass": None if nut_mass is None else _mass(nut_mass, f"{what}: nut_mass"),
             "fastener": fastener,
-            "engaged": None if engaged is None else positive(engaged, "m", f"{what}: engaged"),
+            "engaged": None if engaged is None else number(engaged, f"{what}: engaged", "m", least=0),
             "thread": Thread.parse(thread) if isinstance(thread, str) else thread,
-            "shank": None if shank is None else si(shank, "m", name=f"{what}: shank"),
+            "shank": None if shank is None else number(shank, f"{what}: shank", "m"),
             "head": head,
             "friction": friction,
         }
@@ -413,7 +414,7 @@ def solid_of(given: Solid | str, what: str) -> Solid:
 
 
 def _mass(given: float | str, name: str) -> float:
-    value = si(given, "kg", name=name)
+    value = number(given, name, "kg")
     if value < 0:
         raise InputError(f"{name} = {shortened(given)}; it must be 0 or more")
     return value

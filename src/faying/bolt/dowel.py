@@ -12,6 +12,7 @@ from numpy.polynomial.legendre import leggauss, legint, legval
 
 from faying.bolt.bolt import frame_about, solid_of
 from faying.bolt.tapped import RoundHole, round_hole
+from faying.checks import number
 from faying.errors import InputError
 from faying.fe.elasticity import Solid
 from faying.fe.elements import FACES
@@ -21,7 +22,7 @@ from faying.fe.sides import nodes_of
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.typing import Array
-from faying.units import positive, show, si
+from faying.units import show
 
 ORDER = 6  # greatest power of the depth in the pressure on the wall of a hole
 PLAY = 0.02  # of the diameter: holes that differ by more from the pin do not hold it without play
@@ -78,10 +79,10 @@ class Dowel:
             "name": name,
             "walls": tuple(walls),
             "material": solid_of(material, what),
-            "diameter": None if diameter is None else positive(diameter, "m", f"{what}: diameter"),
+            "diameter": None if diameter is None else number(diameter, f"{what}: diameter", "m", least=0),
             "ends": None
             if ends is None
-            else tuple(tuple(si(x, "m", name=f"{what}: ends") for x in end) for end in ends),
+            else tuple(tuple(number(x, f"{what}: ends", "m") for x in end) for end in ends),
         }
         for key, value in values.items():
             object.__setattr__(self, key, value)

@@ -49,10 +49,9 @@ def command(study: Path, **options: Any) -> None:
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
-    from faying.backbones.backbone import backbones
-    from faying.backbones.choice import names
+    from faying.backbones.backbone import backbones, names
     from faying.measured.ring_down import MeasuredBackbone
-    from faying.result import backbone_figure as drawing
+    from faying.result import backbone as drawing
     from faying.study import Study
     from faying.style import check_figure, save
 
@@ -114,7 +113,8 @@ def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) ->
 
 def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     """The choice of the study with the options in place of it, and the indices of its loads."""
-    from faying.backbones.choice import chosen
+    from faying.backbones.backbone import chosen
+    from faying.checks import plain
     from faying.joint.preload_case import preload_index
     from faying.study.keys.backbone import accelerations, laws
 
@@ -125,14 +125,14 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
         given["at"] = place(options["at"])
     if options["rest_damping"] is not None:
         rest = options["rest_damping"]
-        given["rest_damping"] = "law" if rest == "law" else plain_number(rest, "--rest-damping")
+        given["rest_damping"] = "law" if rest == "law" else plain(rest, "--rest-damping")
     if options["coulomb"]:
         given["slip"] = "coulomb"
     if options["law"] is not None:
         given["laws"] = laws(options["law"].split(","), "--law")
     friction = None
     if options["friction"] is not None:
-        friction = [plain_number(part, "--friction") for part in options["friction"].split(",")]
+        friction = [plain(part, "--friction") for part in options["friction"].split(",")]
     preloads = options["preloads"]
     if "all" in preloads:
         if len(preloads) > 1:
@@ -143,15 +143,6 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     else:
         loads = [len(plan.loads) - 1]
     return chosen(plan, friction, given), loads
-
-
-def plain_number(text: str, name: str) -> float:
-    """Turn the text of a plain number into one; InputError otherwise."""
-
-    try:
-        return float(text)
-    except ValueError:
-        raise InputError(f'{name} = "{text}" should be a plain number, for example 0.2') from None
 
 
 def place(text: str) -> tuple[float, float, float]:

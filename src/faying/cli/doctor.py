@@ -88,7 +88,7 @@ def _mpi() -> dict[str, str]:
     from shutil import which
 
     if which("mpiexec") is None:
-        return finding("no mpiexec on the path", "optional", "only --mpi needs it, with petsc4py and slepc4py")
+        return finding("no mpiexec on the path", "optional", "only --mpi needs it, with petsc4py")
     return finding(str(which("mpiexec")))
 
 

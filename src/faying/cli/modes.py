@@ -30,7 +30,7 @@ from faying.text import json_text
     "--mpi",
     type=click.IntRange(1, 1_000_000),
     metavar="PROCESSES",
-    help="Solve with SLEPc in this number of processes, started by mpiexec.",
+    help="Solve with PETSc in this number of processes, started by mpiexec.",
 )
 @click.option(
     "--export",
@@ -92,19 +92,19 @@ def command(
 
 
 def _over_mpi(given: Any, count: int, shift: float, processes: int) -> dict[str, Any]:
-    from faying.mpi.modes import modes_over_mpi
+    from faying.export.modes_over_mpi import modes_over_mpi
 
-    modes = modes_over_mpi(
+    modes, solver = modes_over_mpi(
         given.stiffness, given.mass, count, shift_frequency=shift, processes=processes, points=given.points
     )
     return {
         "source": given.source,
         "unknowns": int(given.mass.shape[0]),
-        "solver": modes.solver,
+        "solver": modes.factorisation.name,
         "processes": processes,
-        "iterations": modes.iterations,
-        "process_memory": {"unit": "B", "values": modes.peak.tolist()},
-        "process_cpu": {"unit": "s", "values": modes.cpu.tolist()},
+        "iterations": solver.steps,
+        "process_memory": {"unit": "B", "values": solver.peak.tolist()},
+        "process_cpu": {"unit": "s", "values": solver.cpu.tolist()},
         "error_of_squares": modes.error.tolist(),
         "frequencies": {"unit": "Hz", "values": modes.frequencies.tolist()},
     }

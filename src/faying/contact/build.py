@@ -123,11 +123,6 @@ def find(name: str) -> LawKind:
     return kind
 
 
-def label_of(law: ContactLaw) -> LawKind:
-    """The kind that a law is of, as its name says."""
-    return find(law.name)
-
-
 def find_law(name: str) -> type[ContactLaw]:
     """Return the class of the law called `name`; see `find`."""
     return find(name).law

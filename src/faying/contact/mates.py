@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.checks import instance, real
+from faying.checks import instance, number, real
 from faying.contact.auto import Choice, pick
 from faying.contact.build import AUTO, NAMED, LawKind, find, kinds
 from faying.contact.compare import Comparison, compare
@@ -24,7 +24,7 @@ from faying.surface.convention import NAMES
 from faying.surface.fractal_fit import FractalFit
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
-from faying.units import show, si
+from faying.units import show
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -119,7 +119,7 @@ class Mates(Summary):
         """
         if not isinstance(of, str) or of not in (ONE, BOTH):
             raise InputError(f'of = {shown(of)}; D and G are those of "{BOTH}" together, or of "{ONE}"')
-        dimension, roughness = real(D, "D"), si(G, "m", name="G")
+        dimension, roughness = real(D, "D"), number(G, "G", "m")
         if not 2 < dimension < 3:
             raise InputError(f"D = {dimension}: the dimension of a surface is between 2 and 3, for example 2.4")
         if roughness <= 0:
@@ -128,7 +128,7 @@ class Mates(Summary):
         if of == ONE:
             stated = f"from G {show(roughness, 'm')} of one face, the other alike and unrelated"
             roughness = together(roughness, dimension)
-        area = si(scan_area, "m^2", name="scan_area")
+        area = number(scan_area, "scan_area", "m^2")
         numbers = FractalSurface(D=dimension, G=roughness, scan_area=area)
         return cls(RoughPair(face=numbers, stated=stated), materials=materials)
 
@@ -404,7 +404,7 @@ def _faces(face: object, **given: Any) -> RoughPair:
     """Faces from what a user gives, text with units read."""
     for name, unit in (("G", "m"), ("scan_area", "m^2")):
         if given[name] is not None:
-            given[name] = si(given[name], unit, name=name)
+            given[name] = number(given[name], name, unit)
     if given["D"] is not None:
         given["D"] = real(given["D"], "D")
     cache = given.pop("cache")

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying import units
+from faying.checks import number, plain
 from faying.errors import InputError, shown
 from faying.typing import Array
-from faying.units import si
 
 FARTHEST = 1e308  # whole numbers beyond it are not floats
 TEXT, FILE, TABLE = "text", "file", "table"  # in place of a unit: a word, the name of a file, an array
@@ -130,22 +130,9 @@ class Parameter:
         elif self.unit:
             out = units.parse(value, self.unit, name=name)
         else:
-            out = _plain(value, name, self.choices)
+            out = plain(value, name, f" or {', '.join(self.choices)}" if self.choices else "")
         self.check(out, name)
         return int(out) if self.whole and isinstance(out, float) else out
-
-
-def _plain(value: object, name: str, choices: tuple[str, ...]) -> float:
-    words = f" or {', '.join(choices)}" if choices else ""
-    try:
-        if isinstance(value, bool) or not isinstance(value, int | float | str):
-            raise ValueError
-        number = float(value)
-    except ValueError:
-        raise InputError(f"{name} = {shown(value)} should be a plain number, for example 0.3{words}") from None
-    if not abs(number) < inf:
-        raise InputError(f"{name} = {shown(value)} should be a plain finite number, for example 0.3{words}")
-    return number
 
 
 def checked_all(
@@ -187,7 +174,7 @@ def checked(values: ArrayLike, *, name: str, unit: str, zero: bool) -> Array:
 
 
 def _floats(values: ArrayLike, name: str, unit: str) -> Array:
-    """Values as they are where they are numbers, as `units.si` reads them where one of them is text."""
+    """Values as they are where they are numbers, as `checks.number` reads them where one of them is text."""
     try:
         given = np.asarray(values)
         if given.dtype.kind in "fiu":
@@ -195,7 +182,7 @@ def _floats(values: ArrayLike, name: str, unit: str) -> Array:
         given = np.asarray(values, dtype=object)
     except (TypeError, ValueError):
         raise InputError(f"{name} = {shown(values)}: the rows differ in length; give numbers in {unit}") from None
-    read = [si(value, unit, name=name) for value in given.ravel()]
+    read = [number(value, name, unit) for value in given.ravel()]
     return np.asarray(read, dtype=float).reshape(given.shape)
 
 

@@ -20,15 +20,16 @@ from faying.typing import Array, Mask
 
 SHAPE = 1.06  # 1 - cos(pi r/(2 r_a)) ~ 1.06 (r/r_a)^2, eq. (9)
 PANEL = np.log(1e3)  # longest panel of a quadrature in ln x
+NODES = 32  # of a quadrature on one panel, exact to rounding
 COUPLING = 1.5 / 2**0.5  # xi sqrt(h_a)
 OWN_MODULUS = 0.453  # fitted to computed caps, benchmarks/asperity_substrate.py
 MAX_RATIO, COMPUTED_HEIGHT = 4.0, 0.075  # greatest Ea/Eb and h_a/R of caps that were computed; none below Ea = Eb
 
 
-def substrate_share(deformation: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
+def substrate_share(deformation: ArrayLike, modulus_ratio: float) -> Array:
     """Return a'/al' [-] of the asperity whose own delta_a/h_a is `deformation` [-]: eq. (1) forwards."""
     y = np.asarray(deformation, float)
-    return np.asarray(y * (1 + modulus_ratio * coefficient * np.sqrt(y)) / SHAPE)
+    return np.asarray(y * (1 + modulus_ratio * COUPLING * np.sqrt(y)) / SHAPE)
 
 
 def asperity_share(applied: ArrayLike, modulus_ratio: float, coefficient: float = COUPLING) -> Array:
@@ -78,14 +79,14 @@ class WeightedIslands(Islands):
     z^(2 e - 1); others by Gauss-Legendre in ln x, on panels of at most a factor of a thousand.
     """
 
-    def __init__(self, D: float, psi: float | None, modulus_ratio: float, nodes: int = 32) -> None:
+    def __init__(self, D: float, psi: float | None, modulus_ratio: float) -> None:
         super().__init__(D, psi)
-        self.modulus_ratio, self.nodes = modulus_ratio, nodes
+        self.modulus_ratio = modulus_ratio
         self._jacobi: dict[float, tuple[Array, Array]] = {}
 
     @cached_property
     def _legendre(self) -> tuple[Array, Array]:
-        x, w = np.polynomial.legendre.leggauss(self.nodes)
+        x, w = np.polynomial.legendre.leggauss(NODES)
         return (x + 1) / 2, w / 2
 
     def _lam(self, x: Array) -> Array:
@@ -98,7 +99,7 @@ class WeightedIslands(Islands):
         if exponent <= 0:
             raise InputError(f"the sum of (a')^{power} over the islands from 0 diverges at D = {self.D}")
         if exponent not in self._jacobi:
-            nodes, weights = roots_jacobi(self.nodes, 0.0, 2 * exponent - 1)
+            nodes, weights = roots_jacobi(NODES, 0.0, 2 * exponent - 1)
             self._jacobi[exponent] = ((nodes + 1) / 2, weights / 2 ** (2 * exponent))
         z, w = self._jacobi[exponent]
         inner = self._lam(upper[..., None] * z**2) ** power
@@ -135,9 +136,9 @@ class MixedIslands(Islands):
     Below the x at which exp(-u) has left double precision c is 1 and the power is integrated in closed form.
     """
 
-    def __init__(self, D: float, psi: float | None, modulus_ratio: float, nodes: int = 32) -> None:
+    def __init__(self, D: float, psi: float | None, modulus_ratio: float) -> None:
         super().__init__(D, psi)
-        self.modulus_ratio, self.nodes = modulus_ratio, nodes
+        self.modulus_ratio = modulus_ratio
 
     def log_compliance(self, slope: Array) -> Array:
         """Return ln c [-] of the largest asperity where its c equals h_a/r_a over `slope`, of any shape."""
@@ -168,7 +169,7 @@ class MixedIslands(Islands):
         lo, hi, q = np.broadcast_arrays(*(np.asarray(v, float) for v in (lower, upper, slope)))
         plain = 2 / SHAPE * (OWN_MODULUS * q / 40) ** 2  # u = 40
         start = np.minimum(np.maximum(lo, plain), hi)
-        t, w = np.polynomial.legendre.leggauss(self.nodes)
+        t, w = np.polynomial.legendre.leggauss(NODES)
         exponent = power + (1 - self.D) / 2
         length = np.where(hi > start, np.log(np.where(hi > start, hi / start, 1.0)), 0.0)
         panels = max(1, int(np.ceil(length.max(initial=0.0) / PANEL)))

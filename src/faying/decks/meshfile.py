@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from faying import units
+from faying.checks import number
 from faying.decks.conforming import among, bodies, check_apart, keys_of
 from faying.decks.programs import reader_of
 from faying.decks.raw import Pretension, RawMesh, joined, understood
@@ -97,9 +98,9 @@ def _meshed(
         )
     return mesh_step(
         file,
-        size=units.positive(size, "m", "size"),
+        size=number(size, "size", "m", least=0),
         local_size={
-            name: units.positive(one, "m", f"face_size of {name!r}") for name, one in (face_size or {}).items()
+            name: number(one, f"face_size of {name!r}", "m", least=0) for name, one in (face_size or {}).items()
         },
         cache=None if cache is None else Path(cache),
     )
@@ -396,8 +397,8 @@ class _Builder:
         whole: list[Index] = []
         for block in cells:
             mine = (at >= start) & (at < start + len(block))
-            for number, places in enumerate(SOLIDS[block.shape[1]].sides):
-                for some, kept in ((sides == number, named), (sides < 0, whole)):
+            for side, places in enumerate(SOLIDS[block.shape[1]].sides):
+                for some, kept in ((sides == side, named), (sides < 0, whole)):
                     rows = at[mine & some] - start
                     if len(rows):
                         kept.append(side_key(block[rows][:, places], n))

@@ -10,6 +10,7 @@ import numpy as np
 
 from faying import units
 from faying.case.case import checked_mesh, joint_law, structure_of, surfaces_of
+from faying.checks import number
 from faying.decks.deck import ContactProperty, JointDeck
 from faying.decks.system import UnitSystem
 from faying.decks.write import write
@@ -30,7 +31,7 @@ from faying.study.study import Study
 from faying.style import Summary
 from faying.text import cut, few
 from faying.typing import Array
-from faying.units import positive, show_area
+from faying.units import show_area
 
 SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
 TOUCHING = 1e-6  # of the structure's size: a gap above it is noted
@@ -135,8 +136,8 @@ def attach(
             pressures that do not cover the face.
     """
     file, study = Path(model), Study.read(study)
-    search = None if tolerance is None else positive(tolerance, "m", "tolerance")
-    at_frequency = None if frequency is None else positive(frequency, "Hz", "frequency")
+    search = None if tolerance is None else number(tolerance, "tolerance", "m", least=0)
+    at_frequency = None if frequency is None else number(frequency, "frequency", "Hz", least=0)
     spec = _joint(study, faces, joint)
     solving = str(pressure) == "solve"
     geometry = GeometryChoice(mesh=file, unit=unit, sets=study.geometry.sets)

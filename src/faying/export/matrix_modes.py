@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from faying.checks import whole
+from faying.checks import number, whole
 from faying.decks.matrices import total_mass
 from faying.errors import InputError
 from faying.export.assembled import Assembled
@@ -16,7 +16,6 @@ from faying.numerics.modes import lowest_modes, missed_modes
 from faying.study.study import Study
 from faying.style import Summary
 from faying.typing import Array, Index
-from faying.units import positive
 
 MAX_ROWS = 9  # frequencies in a summary
 
@@ -101,7 +100,7 @@ def matrix_modes(
     else:
         file = None if mass is None else Path(mass)
         given = Assembled.of_files(Path(stiffness), file, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
-    return modes_of(given, count, given.shift_frequency if shift is None else positive(shift, "Hz", "shift"))
+    return modes_of(given, count, given.shift_frequency if shift is None else number(shift, "shift", "Hz", least=0))
 
 
 def modes_of(given: Assembled, count: int, shift: float) -> MatrixModes:

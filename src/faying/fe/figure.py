@@ -21,7 +21,7 @@ DEFORMED = 0.06  # greatest motion of a mode shape as it is drawn, of the size o
 MAX_COLOURS = 8  # faces with a colour of their own
 
 
-def axes_in_space(ax: "Axes | None", *, width: float = COLUMN, height: float = 3.2) -> Any:
+def axes_in_space(ax: "Axes | None") -> Any:
     """Axes with three dimensions: those given, or new ones that a notebook or `matplotlib.pyplot.show` shows.
 
     Raises InputError for axes that are flat.
@@ -29,7 +29,7 @@ def axes_in_space(ax: "Axes | None", *, width: float = COLUMN, height: float = 3
     if ax is None:
         from matplotlib import pyplot
 
-        figure = pyplot.figure(figsize=(width, height), layout="constrained")
+        figure = pyplot.figure(figsize=(COLUMN, 3.2), layout="constrained")
         return figure.add_subplot(projection="3d")
     if not hasattr(ax, "add_collection3d"):
         raise InputError(

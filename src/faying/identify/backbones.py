@@ -8,7 +8,7 @@ import numpy as np
 
 from faying.measured.ring_down import MeasuredBackbone
 from faying.notes import Note
-from faying.result.backbone_record import measured_of
+from faying.result.backbone import measured_of
 from faying.result.fields import Recorded, listed, variable
 from faying.typing import Array, Index
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from faying.case.case import mates_notes
 from faying.errors import InputError
-from faying.identify.identification import Identification
-from faying.identify.identification_record import mixed
+from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, paired_modes
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses

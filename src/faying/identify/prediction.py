@@ -1,19 +1,81 @@
-"""What scatter makes of the frequencies of a study, drawn."""
+"""What scatter makes of the frequencies of a study: its samples, what follows from them, on disk, and drawn."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+from statistics import NormalDist
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from faying.identify.prediction_figure import interval_axes
-from faying.identify.prediction_record import PredictionRecord
-from faying.misuse import checked_call
+import numpy as np
+
+from faying.errors import InputError
+from faying.identify.backbones import Backbones
+from faying.identify.sampling.ensemble import Inputs
+from faying.identify.sampling.surrogate import Surrogate
+from faying.identify.shares import Shares, shares
+from faying.misuse import checked_call, shortened
+from faying.notes import Note
+from faying.result.backbone import ROUNDING, factor_of, framed, marks
+from faying.result.fields import Recorded, load_texts, optional, variable
+from faying.result.fields import listed as numbers
+from faying.result.provenance import Provenance
+from faying.result.run_record import preload_slope
+from faying.style import (
+    COLOURS,
+    COLUMN,
+    WIDE,
+    axes_of,
+    drawing,
+    headline,
+    load_colours,
+    new_figure,
+    prefixed,
+    shared_legend,
+)
+from faying.text import listed, notes_row
+from faying.typeset import name_of
+from faying.typing import Array
+from faying.units import in_mm, load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+LEVELS = (0.05, 0.5, 0.95)
+# normal scores in the middle of equal shares of the probability, scaled to a variance of 1
+_MIDDLES = [NormalDist().inv_cdf((k + 0.5) / 25) for k in range(25)]
+SCORES = tuple(float(z / np.std(_MIDDLES)) for z in _MIDDLES)
+MAX_MODES = 5  # that a summary has a line for
+POINTS = 4096  # at which the shares of variance are taken
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantiles:
+    """Quantiles over the samples that have an answer, one row for each level.
+
+    Args:
+        levels: Shares of the samples below (q,) [-].
+        frequencies: (q, load, mode) [Hz], of elastic modes in rising order.
+        loss_factors: (q, load, mode) [-]; NaN where no law predicts loss.
+        slopes: Change with preload (q, mode) [Hz/N], by a line through all loads; NaN for a single load.
+        paired: Frequencies of the test's modes (q, load, test mode) [Hz]; None where the study has no test.
+        backbone_frequencies: Of the backbones (q, amplitude) [Hz], NaN where fewer than half of them go on; None
+            without backbones.
+        backbone_damping: Their damping ratios to critical (q, amplitude) [-], likewise.
+    """
+
+    levels: tuple[float, ...]
+    frequencies: Array
+    loss_factors: Array
+    slopes: Array
+    paired: Array | None
+    backbone_frequencies: Array | None = None
+    backbone_damping: Array | None = None
+
 
 @checked_call
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Prediction(PredictionRecord):
+class Prediction(Recorded):
     """A study under the scatter of its numbers.
 
     Args:
@@ -29,6 +91,258 @@ class Prediction(PredictionRecord):
         frequencies_of_test, test_source: The test, where the study has one.
     """
 
+    KIND: ClassVar[str] = "prediction"
+    COMMAND: ClassVar[str] = "faying predict STUDY.toml"
+
+    title: str
+    inputs: Inputs
+    seed: int
+    tolerance: float
+    basis: tuple[int, int]
+    loads: Array = variable("load", "N", "preload of the first bolt", "preload")
+    values: Array = variable("sample input", "", "values drawn, in the unit of each input", "samples/value")
+    frequencies: Array = variable(
+        "sample load mode", "Hz", "frequencies of elastic modes", "samples/frequency", gaps=True
+    )
+    loss_factors: Array = variable("sample load mode", "1", "modal loss factors", "samples/loss_factor", gaps=True)
+    open_share: Array = variable("sample load", "1", "share of the joints that is open", "samples/", gaps=True)
+    above_range_share: Array = variable(
+        "sample load", "1", "share of the contact above the end of the law", "samples/above_range_share", gaps=True
+    )
+    paired: Array | None = optional(
+        "sample load test_mode", "Hz", "frequencies of the test's modes", "samples/frequency_of_test_mode", gaps=True
+    )
+    test: Array | None = optional("load test_mode", "Hz", "measured frequencies", "test/frequency", gaps=True)
+    test_source: str = ""
+    reasons: dict[str, int] = field(default_factory=dict)
+    discrepancy: float = 0.0
+    backbones: Backbones | None = None
+    notes: tuple[Note, ...] = ()
+    provenance: Provenance | None = None
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """Return a heading, what scatters, and the intervals of the first frequencies at the last preload."""
+        head = f"Prediction {self.title!r}: {self.answered} of {len(self.values)} samples have an answer"
+        rows = {"scatters": listed(self.names, 4), "preloads": listed(load_texts(self.loads))}
+        if not self.answered:
+            return head, rows | {"why": shortened("; ".join(self.reasons))}
+        values, test = self.observed
+        low, middle, high = _levels(self._with_discrepancy(values[self.sound][:, -1]), LEVELS)
+        rows["frequencies"] = f"5 % | 50 % | 95 % at {load_texts(self.loads)[-1]}"
+        shown = min(len(middle), MAX_MODES)
+        for k in range(shown):
+            measured = f", test {test[-1, k]:.2f} Hz" if np.isfinite(test[-1, k]) else ""
+            rows[f"mode {k + 1}"] = f"{low[k]:.2f} | {middle[k]:.2f} | {high[k]:.2f} Hz{measured}"
+        if len(middle) > shown:
+            rows["more modes"] = str(len(middle) - shown)
+        inside, count = self.covered
+        rows |= {"test": f"{inside} of {count} frequencies between 5 and 95 %"} if count else {}
+        return head, rows | notes_row(self.notes)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What scatters."""
+        return self.inputs.names
+
+    @property
+    def sound(self) -> Any:
+        """Which samples have an answer (n,)."""
+        return np.isfinite(self.frequencies[:, 0, 0])
+
+    @property
+    def answered(self) -> int:
+        """How many samples have an answer."""
+        return int(np.count_nonzero(self.sound))
+
+    @checked_call
+    def quantiles(self, levels: Sequence[float] = LEVELS) -> Quantiles:
+        """Quantiles of frequencies, loss factors, slopes and backbones.
+
+        Args:
+            levels: Shares from 0 to 1 of the samples that lie below.
+
+        Raises:
+            InputError: A level outside 0 to 1, or no sample with an answer.
+        """
+        if not len(levels) or not all(0 <= level <= 1 for level in levels):
+            raise InputError(f"levels {tuple(levels)} should be shares from 0 to 1, for example (0.05, 0.5, 0.95)")
+        found = self._quantiles(tuple(map(float, levels)), self.sound)
+        if self.backbones is None:
+            return found
+        frequencies, damping = self.backbones.quantiles(levels)
+        return replace(found, backbone_frequencies=frequencies, backbone_damping=damping)
+
+    def _with_discrepancy(self, values: Array) -> Array:
+        """Frequencies (n, ...) with those that the discrepancy makes of each, in equal shares (n * NODES, ...)."""
+        if not self.discrepancy:
+            return values
+        return np.concatenate([values * np.exp(self.discrepancy * score) for score in SCORES])
+
+    def _quantiles(self, levels: tuple[float, ...], which: Any) -> Quantiles:
+        if not np.any(which):
+            raise InputError(f"no sample has an answer: {'; '.join(self.reasons)}")
+        paired = None
+        if self.paired is not None:
+            paired = _levels(self._with_discrepancy(self.paired[which]), levels)
+        return Quantiles(
+            levels=levels,
+            frequencies=_levels(self._with_discrepancy(self.frequencies[which]), levels),
+            loss_factors=_levels(self.loss_factors[which], levels),
+            slopes=_levels(self.slopes[which], levels),
+            paired=paired,
+        )
+
+    @cached_property
+    def slopes(self) -> Array:
+        """Change of each mode's frequency with preload (sample, mode) [Hz/N], by a line; NaN for a single load."""
+        return np.stack([preload_slope(one, self.loads) for one in self.frequencies])
+
+    @cached_property
+    def convergence(self) -> float:
+        """What the 5 and 95 % of the frequencies move by when half of the samples are left out, over their distance.
+
+        The greatest over modes and loads [-]; NaN with fewer than 16 samples.
+        """
+        if self.answered < 16:
+            return float("nan")
+        half = self.sound & (np.arange(len(self.values)) < len(self.values) // 2)
+        if not np.any(half):
+            return float("nan")
+        whole, part = (self._quantiles((0.05, 0.95), which).frequencies for which in (self.sound, half))
+        width = np.maximum(whole[1] - whole[0], 1e-9 * whole[1])
+        return float((np.abs(part - whole) / width).max())
+
+    @property
+    def observed(self) -> tuple[Array, Array]:
+        """Frequencies (sample, load, k) and their test (load, k): the test's modes; all modes where there is none."""
+        if self.paired is None or self.test is None:
+            return self.frequencies, np.full(self.frequencies.shape[1:], np.nan)
+        return self.paired, self.test
+
+    @property
+    def covered(self) -> tuple[int, int]:
+        """How many of the measured frequencies lie between the 5 and the 95 %, and how many there are."""
+        if self.paired is None or self.test is None:
+            return 0, 0
+        low, high = self.quantiles((0.05, 0.95)).paired  # type: ignore[misc]
+        inside = (self.test >= low) & (self.test <= high)
+        return int(inside.sum()), int(np.isfinite(self.test).sum())
+
+    def shares(self) -> tuple[Shares, Array]:
+        """Shares of the variance of the frequencies at the last load that each input has.
+
+        They are those of a polynomial through the samples, in the scores of the inputs; one for each law.
+
+        Returns:
+            The shares of each mode: of the test's modes, or of all where there is no test; and the polynomial's
+            leave-one-out error (mode,), over the standard deviation of the frequency [-].
+
+        Raises:
+            InputError: Too few samples with an answer.
+        """
+        return self._shares
+
+    @cached_property
+    def _shares(self) -> tuple[Shares, Array]:
+        seen = self.observed[0][:, -1]
+        inputs = self.inputs
+        numeric = len(inputs.columns) - bool(inputs.models)
+        needed = 2 * (numeric + 1)
+        answers = np.isfinite(seen[self.sound]).sum(axis=0)
+        modes = np.flatnonzero(answers >= needed)
+        if not len(modes):
+            raise InputError(
+                f"at most {answers.max(initial=0)} samples have an answer; shares of {numeric} inputs need {needed}"
+            )
+        laws = self._laws(self.values)
+        scores = self._scores(self.values)
+        fits, squared = {}, np.zeros(len(modes))
+        for law in np.unique(laws[self.sound]):
+            here = self.sound & (laws == law)
+            fits[law] = Surrogate.fit(scores[here, :numeric], seen[here][:, modes])
+            squared = squared + fits[law].error ** 2 * np.count_nonzero(here)
+
+        def function(values: Array) -> Array:
+            out = np.empty((len(values), len(modes)))
+            which, at = self._laws(values), self._scores(values)[:, :numeric]
+            for law in np.unique(which):
+                # a law without any answer has no part in the variance of the answers
+                out[which == law] = fits.get(law, next(iter(fits.values()))).predict(at[which == law])
+            return out
+
+        spread = np.nanstd(seen[self.sound][:, modes], axis=0)
+        error = np.full(seen.shape[1], np.nan)
+        error[modes] = np.sqrt(squared / self.answered) / np.where(spread > 0, spread, np.inf)
+        found = shares(function, inputs.priors, count=POINTS)
+        return _at_modes(found, modes, seen.shape[1]), error
+
+    def _scores(self, values: Array) -> Array:
+        """Standard normal scores (n, d) of values (n, d)."""
+        return np.stack([prior.score(x) for prior, x in zip(self.inputs.priors, values.T, strict=True)], axis=1)
+
+    def _laws(self, values: Array) -> Any:
+        """Place of the law of each sample (n,); 0 where the law is certain."""
+        if not self.inputs.models:
+            return np.zeros(len(values), dtype=int)
+        names = [name for name, _ in self.inputs.models]
+        return np.array([names.index(self.inputs.model(share)) for share in values[:, -1]])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return a summary ready for JSON, in SI units; the samples are in the file."""
+        found = self.quantiles(LEVELS)
+        out: dict[str, Any] = {
+            "title": self.title,
+            "samples": len(self.values),
+            "answered": self.answered,
+            "without_answer": self.reasons,
+            "loads": {"unit": "N", "values": numbers(self.loads)},
+            "inputs": [{"key": c.key, "distribution": c.distribution.text(c.unit)} for c in self.inputs.columns],
+            "laws": dict(self.inputs.models),
+            "quantiles": {
+                "levels": list(LEVELS),
+                "frequencies": {"unit": "Hz", "values": numbers(found.frequencies)},
+                "loss_factors": {"unit": "1", "values": numbers(found.loss_factors)},
+                "slopes": {"unit": "Hz/N", "values": numbers(found.slopes)},
+            },
+            "convergence": numbers(self.convergence),
+            "notes": [{"code": note.code, "text": note.text} for note in self.notes],
+        }
+        if found.paired is not None and self.test is not None:
+            inside, count = self.covered
+            out["test"] = {
+                "source": self.test_source,
+                "frequencies": {"unit": "Hz", "values": numbers(self.test)},
+                "predicted": {"unit": "Hz", "values": numbers(found.paired)},
+                "covered": {"between 5 and 95 %": inside, "of": count},
+            }
+        if self.backbones is not None:
+            out["backbones"] = self.backbones.to_dict(LEVELS)
+        try:
+            found_shares, error = self.shares()
+        except InputError as fault:
+            return out | {"shares": {"none": str(fault)}}
+        out["shares"] = {
+            "inputs": list(self.names),
+            "first": numbers(found_shares.first),
+            "total": numbers(found_shares.total),
+            "surrogate_error": numbers(error),
+        }
+        return out
+
+    def labels(self) -> dict[str, Any]:
+        """Labels of the dimensions of its arrays, by the name of the dimension."""
+        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, self.frequencies.shape[2] + 1)}
+        out["input"] = self.names
+        return out | ({} if self.test is None else {"test_mode": np.arange(1, self.test.shape[1] + 1)})
+
+    def with_backbones(self, backbones: Backbones) -> Self:
+        """The same with the backbones of its first samples, and what there is to say of them."""
+        return replace(self, backbones=backbones, notes=(*self.notes, *backbones.notes))
+
+    def with_notes(self, notes: Sequence[Note]) -> Self:
+        """The same with more to say."""
+        return replace(self, notes=(*self.notes, *notes))
+
     @checked_call
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the 5 to 95 % of each frequency about its median, with the test where there is one.
@@ -43,3 +357,168 @@ class Prediction(PredictionRecord):
             InputError: It is not axes, or no sample has an answer.
         """
         return interval_axes(self, ax)
+
+
+def _at_modes(found: Shares, modes: Any, count: int) -> Shares:
+    """Shares of some modes among all, NaN for the others."""
+
+    def spread(values: Array) -> Array:
+        out = np.full((*values.shape[:-2], count, values.shape[-1]), np.nan)
+        out[..., modes, :] = values
+        return out
+
+    return Shares(**{f.name: spread(getattr(found, f.name)) for f in fields(Shares)})
+
+
+def _levels(values: Array, levels: tuple[float, ...]) -> Array:
+    """Quantiles (q, ...) over the first axis, NaN left out; NaN where nothing is left."""
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # all-NaN columns, such as losses where none is predicted
+        return np.asarray(np.nanquantile(values, levels, axis=0))
+
+
+MAX_INPUTS = 6  # of the scatter matrix
+
+
+@drawing
+def intervals(found: Prediction) -> Any:
+    """Return the figure of the 5 to 95 % of each frequency over its median, one column a preload, the test as dots."""
+    count = found.observed[0].shape[2]
+    fig = new_figure(WIDE, max(2.1, 1.2 + 0.24 * count * len(found.loads) ** 0.5))
+    _draw_intervals(fig.subplots(), found)
+    fig.legend(loc="outside lower center", ncols=4)
+    return fig
+
+
+@drawing
+def interval_axes(found: Prediction, ax: "Axes | None" = None) -> "Axes":
+    """Draw the 5 to 95 % of each frequency over its median, and the test."""
+    if not found.answered:
+        raise InputError(f"no sample has an answer: {'; '.join(found.reasons)}")
+    count = found.observed[0].shape[2]
+    (target,) = axes_of(ax, 1, width=WIDE, height=max(2.1, 1.2 + 0.24 * count * len(found.loads) ** 0.5))
+    _draw_intervals(target, found)
+    target.legend(loc="best")
+    return target
+
+
+def _draw_intervals(ax: Any, found: Prediction) -> None:
+    test, levels = found.observed[1], found.quantiles(LEVELS)
+    low, middle, high = levels.frequencies if levels.paired is None or found.test is None else levels.paired
+    count = len(found.loads)
+    shades = load_colours(count)
+    for load in range(count):
+        y = np.arange(middle.shape[1]) + (load - (count - 1) / 2) * 0.7 / count
+        shade = shades[load]
+        ends = [100 * (1 - low[load] / middle[load]), 100 * (high[load] / middle[load] - 1)]
+        label = load_text(found.loads[load])
+        ax.errorbar(np.zeros(len(y)), y, xerr=ends, fmt="|", color=shade, lw=2.2, ms=7, capsize=0, label=label)
+        ax.plot(100 * (test[load] / middle[load] - 1), y, "s", ms=4.5, mfc="white", mec=shade, mew=1.2)
+    if np.isfinite(test).any():
+        ax.plot([], [], "s", ms=4.5, mfc="white", mec="0.3", mew=1.2, label="test")
+    ax.set_yticks(range(middle.shape[1]), [f"{k + 1}: {middle[-1, k]:.0f} Hz" for k in range(middle.shape[1])])
+    ax.invert_yaxis()
+    ax.set_xlabel("difference from the median [%]; bars from 5 to 95 %")
+    ax.set_ylabel("mode and its median")
+    ax.grid(axis="x", alpha=0.3)
+    ax.set_title(headline(found.title))
+
+
+@drawing
+def tornado(found: Prediction) -> Any:
+    """Return the figure of the shares of the variance of each mode at the last preload, first order and total."""
+    shares, _ = found.shares()
+    modes = len(shares.first)
+    order = np.argsort(np.nanmean(shares.total, axis=0))[::-1]
+    fig = new_figure(WIDE, 1.3 + 0.22 * modes + 0.08 * len(found.names))
+    ax = fig.subplots()
+    left = np.zeros(modes)
+    for rank, k in enumerate(order):
+        width = np.clip(np.nan_to_num(shares.first[:, k]), 0, None)
+        ax.barh(
+            range(modes),
+            100 * width,
+            left=100 * left,
+            height=0.7,
+            color=COLOURS[rank % len(COLOURS)],
+            hatch="//" if rank >= len(COLOURS) else None,
+            label=name_of(found.names[k]),
+        )
+        left += width
+    rest = np.clip(1 - left, 0, None)
+    ax.barh(
+        range(modes),
+        100 * rest,
+        left=100 * left,
+        height=0.7,
+        color="white",
+        edgecolor="0.6",
+        label="together, not one alone",
+    )
+    ax.invert_yaxis()
+    ax.set_yticks(range(modes), [str(k + 1) for k in range(modes)])
+    ax.set(xlim=(0, 100), ylabel="mode" if found.paired is None else "test mode")
+    ax.set_xlabel(f"share of the variance at {load_text(found.loads[-1])} [%]")
+    fig.legend(loc="outside lower center", ncols=2)
+    ax.set_title(headline(found.title))
+    return fig
+
+
+@drawing
+def scatter_matrix(found: Prediction) -> Any:
+    """Return the figure of the samples: the inputs that matter most against the frequencies at the last preload."""
+    shares, _ = found.shares()
+    values, _ = found.observed
+    frequencies = values[:, -1]
+    modes = np.arange(min(3, frequencies.shape[1]))
+    order = np.argsort(np.nanmean(shares.total[modes], axis=0))[::-1][:MAX_INPUTS]
+    fig = new_figure(WIDE, 1.25 * len(modes) + 0.8)
+    axes = fig.subplots(len(modes), len(order), sharex="col", sharey="row", squeeze=False)
+    for row, mode in enumerate(modes):
+        for column, k in enumerate(order):
+            ax = axes[row, column]
+            factor, unit = prefixed(found.values[:, k], found.inputs.columns[k].unit)
+            ax.plot(found.values[:, k] / factor, frequencies[:, mode], ".", ms=2, color=COLOURS[0], alpha=0.5)
+            ax.locator_params(nbins=3)
+            if row == len(modes) - 1:
+                ax.set_xlabel(
+                    "\n".join(wrap(name_of(found.names[k]), 18, break_long_words=False))
+                    + (f"\n[{unit}]" if unit else "")
+                )
+        axes[row, 0].set_ylabel(f"mode {mode + 1} [Hz]")
+    return fig
+
+
+@drawing
+def backbones(found: Prediction) -> Any:
+    """Return the figure of the backbones: 5 to 95 % and the median of frequency and damping, measured points over them.
+
+    Thin lines are the samples, some of which may go farther than the quantiles. Raises InputError without backbones.
+    """
+    curves = found.backbones
+    if curves is None:
+        raise InputError("this prediction has no backbones; ask for them with --backbones 32")
+    fig = new_figure(COLUMN, 4.8)
+    upper, lower = fig.subplots(2, 1, sharex=True)
+    a = curves.acceleration
+    bands = curves.quantiles(LEVELS)
+    for ax, quantity, values, band in (
+        (upper, "frequency", curves.frequencies, bands[0]),
+        (lower, "damping", curves.damping, bands[1]),
+    ):
+        factor = factor_of(quantity)
+        least = ROUNDING * np.nanmax(values, initial=0.0)  # below it nothing slips yet
+        low, middle, high = factor * np.where(band > least, band, np.nan)
+        for k, line in enumerate(factor * np.where(values > least, values, np.nan)):
+            ax.plot(a, line, color="0.6", lw=0.5, alpha=0.6, label="samples" if k == 0 else None)
+        ax.fill_between(a, low, high, color=COLOURS[0], alpha=0.25, lw=0, label="5 to 95 %")
+        ax.plot(a, middle, color=COLOURS[0], lw=1.8, label="median")
+        if curves.measured is not None:
+            marks(ax, curves.measured, quantity, 0)
+        framed(ax, quantity)
+    lower.set_xlabel(f"acceleration at {in_mm(curves.at)} [m/s²]")
+    upper.set_title(f"{headline(found.title)}: mode {curves.mode}, {load_text(curves.preload)}")
+    shared_legend(fig, [upper], 2)
+    return fig

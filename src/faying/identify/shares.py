@@ -34,16 +34,13 @@ class Shares:
     total_interval: Array
 
 
-def shares(
-    function: Callable[[Array], Array], priors: Sequence[Distribution], *, count: int = 4096, seed: int = 0
-) -> Shares:
+def shares(function: Callable[[Array], Array], priors: Sequence[Distribution], *, count: int = 4096) -> Shares:
     """First-order and total shares of variance (Sobol indices).
 
     Args:
         function: from values (n, d) to outputs (n, m), finite, for any number of points at once.
         priors: of the d independent inputs.
         count: points, a power of 2; the function is evaluated at count (d + 2).
-        seed: of the points.
 
     Raises:
         InputError: count is not a power of 2, or an output is not finite.
@@ -74,7 +71,7 @@ def shares(
         return _indices(f_A, f_B, f_AB, np.ones((1, f_A.shape[1])))[:, 0]
 
     load_direction_numbers()
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     sobol_indices(func=outputs, n=count, dists=[_Quantile(p) for p in priors], method=method, rng=rng)
     repeats = rng.multinomial(count, np.full(count, 1 / count), size=REPEATS).astype(float)
     f_A, f_B, f_AB = kept

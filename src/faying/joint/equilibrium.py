@@ -8,7 +8,7 @@ matrices (`preload`) or in a small basis (`reduce`).
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -133,7 +133,6 @@ class Equilibrium(ABC):
         shanks: Any | None = None,
         tolerance: float = 1e-10,
         steps: int = MAX_NEWTON_STEPS,
-        report: Callable[[str], None] | None = None,
     ) -> PreloadState:
         """Find equilibrium under nodal forces `load` [N] (unknowns,).
 
@@ -149,7 +148,7 @@ class Equilibrium(ABC):
         self.stiffness = self.parts if shanks is None else self.parts + shanks
         if start is None:
             start = self._extrapolated(load) if self._past else self._start(load)
-        newton = Newton(self, load, tolerance, report)
+        newton = Newton(self, load, tolerance)
         run = newton.run(start, steps)
         try:
             wanted = next(run)
@@ -380,7 +379,6 @@ class Newton:
     balance: Equilibrium
     load: Array
     tolerance: float
-    report: Callable[[str], None] | None
     size: float = np.inf
     steps: int = 0
     inner: int = 0
@@ -423,8 +421,6 @@ class Newton:
             if self.size > FIX_FRICTION_BELOW:
                 slip_states = balance._stick_slip(u)
             self.steps, self.inner = self.steps + 1, self.inner + count
-            if self.report:
-                self.report(f"Newton {self.steps}: imbalance {self.size:.1e}, {count} inner steps")
 
 
 def _through_last(past: Sequence[tuple[float, Array]], size: float) -> Array:

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from faying.checks import number
 from faying.contact.law import ContactLaw
 from faying.errors import InputError
 from faying.fe.elasticity import Solid
@@ -19,7 +20,6 @@ from faying.joint.springs import Springs
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.typing import Array, Mask
-from faying.units import positive
 
 MAX_TANGENTIAL = 2.0  # greatest k_t/k_n [-]
 SAME_MODULUS = 0.02  # relative difference of E* from which the materials of a law are not those of the parts
@@ -84,10 +84,10 @@ class Joint:
             "name": name,
             "tangential": tangential,
             "per_node": per_node,
-            "scan_area": None if scan_area is None else positive(scan_area, "m^2", f"{called}: scan_area"),
+            "scan_area": None if scan_area is None else number(scan_area, f"{called}: scan_area", "m^2", least=0),
             "friction": friction,
             "search_distance": (
-                None if search_distance is None else positive(search_distance, "m", f"{called}: search_distance")
+                None if search_distance is None else number(search_distance, f"{called}: search_distance", "m", least=0)
             ),
             "form": form,
         }

@@ -157,7 +157,7 @@ class PreloadProblem(Equilibrium):
     def _solve_steps(self, load: Array, guess: Guess, tolerance: float) -> Steps[PreloadState]:
         """From a guess of the joints to equilibrium under a load, with the factorisation as it is."""
         start = yield from self._initial_guess(load, guess)
-        newton = Newton(self, load, tolerance, None)
+        newton = Newton(self, load, tolerance)
         run = newton.run(start, MAX_NEWTON_STEPS)
         wanted = next(run)
         while True:

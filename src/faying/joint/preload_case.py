@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from faying.checks import number
 from faying.errors import InputError
 from faying.typing import Array
-from faying.units import load_text, positive
+from faying.units import load_text
 
 SAME = 1e-3  # relative: messages and tables give a preload with four digits, and what they print is found again
 
@@ -46,7 +47,7 @@ def preload_index(
     """
     if wanted is None:
         return len(preloads) - 1
-    force = positive(wanted, "N", name)
+    force = number(wanted, name, "N", least=0)
     index = int(np.argmin(np.abs(np.asarray(preloads) - force))) if len(preloads) else -1
     if index < 0 or abs(preloads[index] - force) > SAME * force:
         known = ", ".join(load_text(one) for one in preloads)

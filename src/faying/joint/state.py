@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from faying.checks import number
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.joint.bolted import BoltedStructure
@@ -24,7 +25,7 @@ from faying.notes import Note, percent
 from faying.style import Summary
 from faying.text import notes_row, titled
 from faying.typing import Array
-from faying.units import load_text, positive, show
+from faying.units import load_text, show
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -267,13 +268,13 @@ def bolt_forces(structure: BoltedStructure, preload: float | str | Mapping[str, 
     if not names:
         raise InputError("the structure has no bolts, so nothing pulls its joints together; give it bolts=[Bolt(...)]")
     if not isinstance(preload, Mapping):
-        return (positive(preload, "N", "preload"),) * len(names)
+        return (number(preload, "preload", "N", least=0),) * len(names)
     unknown = [name for name in preload if name not in names]
     lacking = [name for name in names if name not in preload]
     if unknown or lacking:
         wrong = f"names bolt {unknown[0]!r}, which is not there" if unknown else f"misses bolt {lacking[0]!r}"
         raise InputError(f"preload {wrong}; the bolts are {', '.join(map(repr, names))}")
-    return tuple(positive(preload[name], "N", f"preload of bolt {name!r}") for name in names)
+    return tuple(number(preload[name], f"preload of bolt {name!r}", "N", least=0) for name in names)
 
 
 def _count(modes: int) -> int:

@@ -1,6 +1,6 @@
 """Bolts tightened one after another: each later bolt changes the force in those that are tight already."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -33,7 +33,6 @@ def tighten(
     forces: Sequence[float],
     *,
     order: Sequence[int] | None = None,
-    report: Callable[[str], None] | None = None,
 ) -> PreloadState:
     """Find the preload of a structure whose bolts are brought to `forces` [N], one for each bolt.
 
@@ -46,7 +45,7 @@ def tighten(
     force = np.asarray(forces, dtype=float)
     loads = structure.loads
     if order is None:
-        at_once = assembly.solve(loads @ force, tolerance=BALANCED, report=report)
+        at_once = assembly.solve(loads @ force, tolerance=BALANCED)
         return replace(at_once, bolt_forces=tuple(float(f) for f in force))
     bolts = structure.fitted_bolts
     missing = sorted(set(range(len(bolts))) - set(order))
@@ -72,7 +71,7 @@ def tighten(
             if index != turn and shank is not None:
                 shanks = shank if shanks is None else shanks + shank
                 load = load + kept * loads[:, index] + shank @ moved
-        found = assembly.solve(load, shanks=shanks, tolerance=BALANCED, report=report)
+        found = assembly.solve(load, shanks=shanks, tolerance=BALANCED)
         tight[turn] = (float(force[turn]), found.displacement)
     assert found is not None
     final = found.displacement

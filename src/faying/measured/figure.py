@@ -11,6 +11,7 @@ from faying.measured.identify import Identified
 from faying.style import COLOURS, COLUMN, SMALL, TALLEST, WIDE, drawing, legend_above, new_figure
 from faying.typeset import unit
 
+MAX_PAIRS = 12  # of shapes in a figure
 WRITTEN = 8  # modes at most for which the values of MAC stand in the map
 
 
@@ -205,9 +206,9 @@ def _framed(ax: Any, comparison: ModalComparison) -> None:
 
 
 @drawing
-def shapes_side_by_side(comparison: ModalComparison, pairs: int = 12) -> Any:
+def shapes_side_by_side(comparison: ModalComparison) -> Any:
     """Return a figure of the pairs, two a row: the test's shape, the model's, in frames of one size."""
-    count = min(pairs, len(comparison.pairs))
+    count = min(MAX_PAIRS, len(comparison.pairs))
     if not count:
         fig = new_figure(COLUMN, 0.6)
         fig.text(0.5, 0.5, "no mode of the test found a partner", ha="center", va="center")

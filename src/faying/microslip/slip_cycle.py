@@ -40,7 +40,7 @@ class StaticCycle:
     states: Array
 
 
-def static_cycle(model: SlipModel, mode: int, amplitude: float, *, steps: int = STEPS, rounds: int = 2) -> StaticCycle:
+def static_cycle(model: SlipModel, mode: int, amplitude: float, *, steps: int = STEPS) -> StaticCycle:
     """March a cycle of the modal displacement between + and - amplitude.
 
     Args:
@@ -48,7 +48,6 @@ def static_cycle(model: SlipModel, mode: int, amplitude: float, *, steps: int = 
         mode: Index of the mode at rest among those of the model, from 0.
         amplitude: Modal amplitude [m sqrt(kg)].
         steps: Load steps from one end to the other.
-        rounds: Cycles marched; the last one is measured.
 
     Returns:
         The loop, its frequency and its damping.
@@ -62,7 +61,7 @@ def static_cycle(model: SlipModel, mode: int, amplitude: float, *, steps: int = 
     first = np.sin(np.pi / 2 * np.arange(1, steps // 2 + 1) / (steps // 2))
     for target in first:
         problem.move(amplitude * target)
-    for _ in range(rounds):
+    for _ in range(2):  # cycles; the last one is measured
         path = [(problem.x.copy(), problem.load)]
         for target in (*sweep, *-sweep):
             problem.move(amplitude * target)

@@ -1,1 +1,1 @@
-"""Modes over several processes: partition, multigrid, and the scripts that each process runs."""
+"""Solutions over several processes: partition, multigrid, and the script that each process runs."""

@@ -8,6 +8,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import weakref
 from collections import deque
@@ -18,14 +19,17 @@ from typing import Any
 import numpy as np
 
 from faying.errors import FayingError, InputError, NotConverged
-from faying.mpi.modes import LAST_WORDS, MIN_UNKNOWNS, programs, started
-from faying.mpi.mpi_petsc import ANSWER
+from faying.mpi.mpi_solver import ANSWER
 from faying.mpi.partition import rows_of_pieces, write_operator, write_points
 from faying.numerics.solve import MPI
 from faying.typing import Array
 
 SOLVER = Path(__file__).with_name("mpi_solver.py")
 ROUGH, FINE = 1e-5, 1e-11  # residual of a solution in the norm of the inverse, relative, in single and in double
+DEBIAN = "python3-petsc4py-real mpi-default-bin"
+SYSTEM = "/usr/bin/python3"
+LAST_WORDS = 12  # lines of the processes that an error repeats
+MIN_UNKNOWNS = 3000  # unknowns of each process: with fewer, more processes do not pay
 PATIENCE = 60.0  # s until processes that were told to end are made to
 
 
@@ -33,23 +37,24 @@ class OverMpi:
     """Solves with matrices of one structure over processes that it starts by mpiexec.
 
     Args:
-        points: coordinates (n / 3, 3) [m] of the nodes, whose unknowns follow each other as x, y, z.
+        points: coordinates (n / 3, 3) [m] of the nodes, whose unknowns follow each other as x, y, z; None: MUMPS
+            factorises, which needs more memory than multigrid.
         processes: how many, 1 or more.
+        unknowns: n, where there are no points.
 
     Raises:
-        InputError: mpiexec, petsc4py or slepc4py are missing; more processes than the unknowns feed.
+        InputError: mpiexec or petsc4py are missing; more processes than the unknowns feed.
     """
 
-    cheap = True
-
-    def __init__(self, points: Array, processes: int) -> None:
-        unknowns = 3 * len(points)
+    def __init__(self, points: Array | None, processes: int, unknowns: int = 0) -> None:
+        unknowns = unknowns if points is None else 3 * len(points)
         if unknowns < MIN_UNKNOWNS * processes:
             raise InputError(
                 f"{unknowns:,} unknowns over {processes} processes: a structure so small is solved without MPI"
             )
         self._programs = programs()
-        self.points, self.processes = points, processes
+        self.points, self.processes, self.unknowns = points, processes, unknowns
+        self.cheap = points is not None
         self.rows = rows_of_pieces(unknowns, points, processes)
         self.key = f"{MPI}, {processes} processes"
         self.solutions = self.steps = self.most_steps = 0
@@ -65,13 +70,14 @@ class OverMpi:
             NotConverged: the matrix is singular.
             FayingError: a process ended before its time.
         """
-        if matrix.shape[0] != 3 * len(self.points):
-            raise InputError(f"{len(self.points)} points for {matrix.shape[0]} unknowns: each node has three")
+        if matrix.shape[0] != self.unknowns:
+            raise InputError(f"{self.unknowns // 3} points for {matrix.shape[0]} unknowns: each node has three")
         if self._group is None:
             self._group = _Group(self._programs, self.processes)
             # the end of this object, or of the program: whichever comes first
             weakref.finalize(self, self._group.end)
-            write_points(self._group.folder, self.points, self.rows)
+            if self.points is not None:
+                write_points(self._group.folder, self.points, self.rows)
             self._group.start()
         self._group.check()
         while self._given_up:
@@ -92,10 +98,6 @@ class OverMpi:
         for piece, here in enumerate(self.rows):
             np.save(folder / str(piece) / "right.npy", np.asfortranarray(right[here]))
         answer = self._ask("solve", number, reduction)
-        if answer["fault"] is not None:
-            raise NotConverged(
-                f"conjugate gradients over {self.processes} processes: {answer['fault']}; is a part free to move?"
-            )
         self.solutions += len(answer["steps"])
         self.steps += sum(answer["steps"])
         self.most_steps = max(self.most_steps, *answer["steps"])
@@ -119,6 +121,11 @@ class OverMpi:
         assert self._group is not None
         answer = self._group.ask(word, matrix, reduction)
         self.cpu, self.peak = np.array(answer["cpu"]), np.array(answer["peak"])
+        if answer.get("fault") is not None:
+            raise NotConverged(
+                f"solutions over {self.processes} processes: {answer['fault']}; is a part free to move, or the "
+                "structure unstable?"
+            )
         return answer
 
 
@@ -128,7 +135,8 @@ class SolvedOverMpi:
     def __init__(self, solver: OverMpi, number: int, reduction: float) -> None:
         self._solver, self._number, self._reduction = solver, number, reduction
         self.memory = float(solver.peak.sum())
-        self.name = f"conjugate gradients, PETSc GAMG over {solver.processes} processes"
+        way = "MUMPS" if solver.points is None else "conjugate gradients, PETSc GAMG"
+        self.name = f"{way} over {solver.processes} processes"
 
     def solve(self, right: Array) -> Array:
         """Solve for one right-hand side (n,) or several (n, m)."""
@@ -153,10 +161,16 @@ class _Group:
         self._fault = ""
 
     def start(self) -> None:
-        """Start the processes, which then wait for orders."""
+        """Start the processes, which then wait for orders, and end when this one is gone."""
         mpiexec, python = self._programs
         command = [mpiexec, "-n", str(self._processes), python, str(SOLVER), str(self.folder), str(self._processes)]
-        self._running = started(command)
+        pipe, environment = subprocess.PIPE, {"OMP_NUM_THREADS": "1"} | os.environ
+        self._running = subprocess.Popen(  # unbuffered: what a process that has ended did not take is not written again
+            command, env=environment, stdin=pipe, stdout=pipe, stderr=subprocess.STDOUT, bufsize=0
+        )
+        assert self._running.stdin is not None
+        with suppress(OSError):  # what ended at once is told when it is read
+            self._running.stdin.write(b"watch\n")
 
     def check(self) -> None:
         """Raise FayingError where the processes are known to have ended, or are those of another program."""
@@ -215,6 +229,26 @@ class _Group:
 def _line(stream: Any) -> str:
     """The next line of an unbuffered stream; empty at its end."""
     return str(stream.readline().decode("utf-8", errors="replace"))
+
+
+def programs() -> tuple[str, str]:
+    """mpiexec, and a Python that has petsc4py. Raises InputError where there is none."""
+    mpiexec = shutil.which("mpiexec")
+    if mpiexec is None:
+        raise InputError(f"--mpi needs mpiexec; install an MPI (Debian: {DEBIAN})")
+    named = os.environ.get("FAYING_MPI_PYTHON")
+    for python in [named] if named else [sys.executable, SYSTEM]:
+        try:
+            done = subprocess.run([python, str(SOLVER)], capture_output=True, check=False)
+        except OSError:
+            continue
+        if not done.returncode:
+            return mpiexec, python
+    where = f"{named}, as FAYING_MPI_PYTHON says," if named else f"this Python or {SYSTEM}"
+    raise InputError(
+        f"--mpi needs petsc4py in {where}; install it (Debian: {DEBIAN}), or name the Python that has it in the "
+        "environment's FAYING_MPI_PYTHON"
+    )
 
 
 def processes_named(solver: str) -> int:

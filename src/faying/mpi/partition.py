@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -43,50 +42,27 @@ def rows_of_pieces(unknowns: int, points: Array | None, pieces: int) -> list[Ind
     return [(3 * nodes[:, None] + np.arange(3)).ravel() for nodes in bisected(points, pieces)]
 
 
-def numbered(rows: Sequence[Index]) -> Index:
-    """The number of each unknown, piece after piece."""
-    order = np.concatenate(rows)
-    numbers = np.empty(len(order), dtype=np.int64)
-    numbers[order] = np.arange(len(order))
-    return numbers
-
-
-def write_pieces(folder: Path, matrix: Shifted, points: Array | None, rows: Sequence[Index]) -> None:
-    """Write K + s M and M in pieces, unknowns numbered piece after piece, both over the mean mass of an unknown.
-
-    A piece is a folder, named by its number from 0, of .npy files: `operator` and `mass`, each as row pointers, columns
-    and values, and `points` (nodes, 3), from the centre, in sizes of the structure.
-    """
-    numbers = numbered(rows)
-    scale = 1.0 / float(matrix.mass.diagonal().mean())
-    for number, here in enumerate(rows):
-        place = folder / str(number)
-        place.mkdir()
-        mass = matrix.mass[here]
-        _write(place, "operator", (matrix.stiffness[here] + matrix.shift * mass).tocsr(), numbers, scale)
-        _write(place, "mass", mass, numbers, scale)
-    if points is not None:
-        write_points(folder, points, rows)
-
-
 def write_points(folder: Path, points: Array, rows: Sequence[Index]) -> None:
-    """Write `points` alone into the folder of each piece, as `write_pieces` does."""
+    """Write coordinates (nodes, 3) into the folder of each piece, as points.npy.
+
+    A piece is a folder, named by its number from 0. Coordinates are from the centre, in sizes of the structure.
+    """
     centred = (points - points.mean(axis=0)) / np.ptp(points, axis=0).max()
     for number, here in enumerate(rows):
         np.save(folder / str(number) / "points.npy", centred[here[::3] // 3])
 
 
 def write_operator(folder: Path, matrix: Shifted, rows: Sequence[Index]) -> None:
-    """Write `operator` alone into the folder of each piece, as `write_pieces` does, but as it is."""
-    numbers = numbered(rows)
+    """Write the rows of K + s M into the folder of each piece, unknowns numbered piece after piece.
+
+    They are operator_starts.npy, operator_columns.npy and operator_values.npy: row pointers, columns and values.
+    """
+    order = np.concatenate(rows)
+    numbers = np.empty(len(order), dtype=np.int64)
+    numbers[order] = np.arange(len(order))
     for number, here in enumerate(rows):
         piece = (matrix.stiffness[here] + matrix.shift * matrix.mass[here]).tocsr()
-        _write(folder / str(number), "operator", piece, numbers, 1.0)
-
-
-def _write(place: Path, name: str, piece: Any, numbers: Index, scale: float) -> None:
-    piece.indices = numbers[piece.indices]
-    piece.sort_indices()
-    np.save(place / f"{name}_starts.npy", piece.indptr)
-    np.save(place / f"{name}_columns.npy", piece.indices)
-    np.save(place / f"{name}_values.npy", piece.data * scale)
+        piece.indices = numbers[piece.indices]
+        piece.sort_indices()
+        for what, values in (("starts", piece.indptr), ("columns", piece.indices), ("values", piece.data)):
+            np.save(folder / str(number) / f"operator_{what}.npy", values)

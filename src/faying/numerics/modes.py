@@ -127,7 +127,7 @@ def _check_stable(stiffness: Any, values: Array, shapes: Array, shift: float) ->
         )
 
 
-def missed_modes(stiffness: Any, mass: Any, modes: Modes, solver: str | None = None) -> int:
+def missed_modes(stiffness: Any, mass: Any, modes: Modes) -> int:
     """Count the modes that `lowest_modes` has missed below the last of those found, 0 where it has found all.
 
     The matrix K - s M has as many negative eigenvalues as there are modes below s (Sturm); s lies between the last two
@@ -139,7 +139,7 @@ def missed_modes(stiffness: Any, mass: Any, modes: Modes, solver: str | None = N
     apart = (values[1:] - values[:-1]) / (values[1:] + 1e-3 * modes.shift)
     place = int(np.flatnonzero(apart > 1e-3)[-1]) if np.any(apart > 1e-3) else len(apart) - 1
     between = (values[place] + values[place + 1]) / 2
-    return negative_eigenvalues((stiffness - between * mass).tocsr(), solver) - (place + 1)
+    return negative_eigenvalues((stiffness - between * mass).tocsr()) - (place + 1)
 
 
 def _ritz(stiffness: Any, mass: Any, shapes: Array) -> tuple[Array, Array]:

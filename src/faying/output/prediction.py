@@ -5,8 +5,7 @@ import textwrap
 import numpy as np
 
 from faying.errors import InputError
-from faying.identify.prediction import Prediction
-from faying.identify.prediction_record import LEVELS
+from faying.identify.prediction import LEVELS, Prediction
 from faying.output.table import Rows, by_mode
 from faying.output.table import text as aligned
 from faying.units import in_mm, load_text

@@ -16,8 +16,7 @@ from faying.output.figures import narrowing
 from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
 from faying.output.sections import ReportSection, sections
-from faying.result import Result, interval_figure, level_figure
-from faying.result import backbone_figure as backbone
+from faying.result import Result, backbone, interval_figure, level_figure
 from faying.result import figure as structure
 from faying.result import response_figure as response
 from faying.result.fields import declared

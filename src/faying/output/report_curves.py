@@ -7,15 +7,16 @@ import numpy as np
 
 from faying.output.scene.text import packed_backbones, packed_curves
 from faying.result import Result
-from faying.result.backbone import Backbone
-from faying.result.backbone_figure import ROUNDING, label
+from faying.result.backbone import ROUNDING, Backbone, label
 from faying.result.response_figure import words
 from faying.units import in_mm, load_text
 
+MAX_PAIRS = 12  # of output and input
+POINTS = 200  # of a backbone
 AROUND = 1.05  # room beside measured points, as a factor of the acceleration
 
 
-def response_curves(result: Result, most: int = 12) -> list[dict[str, Any]]:
+def response_curves(result: Result) -> list[dict[str, Any]]:
     """Accelerance of the first pairs of output and input at every preload, for curves in a page."""
     found = result.response
     assert found is not None
@@ -28,14 +29,14 @@ def response_curves(result: Result, most: int = 12) -> list[dict[str, Any]]:
             found.frequencies,
             dict(zip(loads, accelerance[:, :, o, i], strict=True)),
         )
-        for o, i in list(np.ndindex(*found.values.shape[2:]))[:most]
+        for o, i in list(np.ndindex(*found.values.shape[2:]))[:MAX_PAIRS]
     ]
 
 
-def backbone_curves(curves: Sequence[Backbone], points: int = 200) -> dict[str, Any]:
+def backbone_curves(curves: Sequence[Backbone]) -> dict[str, Any]:
     """Curves of one mode for a page: on one grid of accelerations, none beyond its own end."""
     low = max(curve.acceleration[0] for curve in curves)
-    grid = np.geomspace(low, max(curve.acceleration[-1] for curve in curves), points)
+    grid = np.geomspace(low, max(curve.acceleration[-1] for curve in curves), POINTS)
     measured, marked = curves[0].measured, ""
     if measured is not None:
         ends = measured.acceleration.min() / AROUND, measured.acceleration.max() * AROUND

@@ -5,8 +5,7 @@ from html import escape
 
 from faying.errors import InputError
 from faying.identify.identification import Identification
-from faying.identify.prediction import Prediction
-from faying.identify.prediction_record import LEVELS
+from faying.identify.prediction import LEVELS, Prediction
 from faying.notes import Note
 from faying.output import page, prediction
 from faying.units import load_text
@@ -23,7 +22,7 @@ TELLS = (
 
 def predicted(found: Prediction) -> str:
     """Return a prediction as the text of an HTML file."""
-    from faying.identify import prediction_figure as drawing
+    from faying.identify import prediction as drawing
 
     rows, words = prediction.blame(found)
     inside, count = found.covered
@@ -64,7 +63,7 @@ def predicted(found: Prediction) -> str:
 
 def identified(found: Identification, title: str, source: str) -> str:
     """Return an identification as the text of an HTML file; title: of its study; source: of its test."""
-    from faying.identify import identification_figure as drawing
+    from faying.identify import identification as drawing
 
     body = [
         f"<h1>{escape(title)}: identification</h1>",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from faying.checks import number
 from faying.errors import InputError
 from faying.file_kinds import STEP, kind_of
 from faying.files import together, write_atomically, write_text
@@ -20,7 +21,7 @@ from faying.setup.proposal import GRADE, SHARE, BoltProposal, DowelProposal, Pro
 from faying.setup.template import SCHEMA, surface
 from faying.style import Summary
 from faying.text import cut
-from faying.units import show, show_area, si
+from faying.units import show, show_area
 
 STEEL = "S355"
 
@@ -128,7 +129,7 @@ def new_study(
     unknown = [name for name in given if name not in parts]
     if unknown:
         raise InputError(f"no part is called {unknown[0]!r}; the parts are {', '.join(map(repr, parts))}")
-    force_of_bolts = None if preload is None else si(preload, "N", name="preload")
+    force_of_bolts = None if preload is None else number(preload, "preload", "N")
     answers = Answers(materials=given, preload=force_of_bolts, scan=None if scan is None else Path(scan))
     return write(proposal, path, out, answers, force=force)
 

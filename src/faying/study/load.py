@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from faying.checks import number
 from faying.errors import InputError
 from faying.misuse import checked_call, shortened
-from faying.units import si
 
 MAX_INCREMENTS = 1000  # of one case
 MAX_FACTOR = 1000.0  # on another case, either way
@@ -77,7 +77,7 @@ class Pressure:
 
     def __init__(self, face: str, pressure: float | str) -> None:
         object.__setattr__(self, "face", face)
-        object.__setattr__(self, "pressure", si(pressure, "Pa", name=f"pressure on {face!r}"))
+        object.__setattr__(self, "pressure", number(pressure, f"pressure on {face!r}", "Pa"))
 
 
 @checked_call
@@ -151,11 +151,11 @@ class Load:
             "pressures": tuple(pressures),
             "acceleration": vector(acceleration, "m/s^2", f"{what}: acceleration"),
             "temperature": {
-                key: si(change, "K", name=f"{what}: temperature of {key!r}")
+                key: number(change, f"{what}: temperature of {key!r}", "K")
                 for key, change in (temperature or {}).items()
             },
             "displacements": tuple(displacements),
-            "combine": {key: si(factor, "", name=f"{what}: combine") for key, factor in (combine or {}).items()},
+            "combine": {key: number(factor, f"{what}: combine") for key, factor in (combine or {}).items()},
             "after": after,
             "increments": increments,
         }
@@ -199,7 +199,7 @@ def vector(values: Sequence[float | str], unit: str, name: str) -> Vector:
     """Return three SI components of numbers or text with a unit. Raises InputError for anything else."""
     if isinstance(values, str) or len(values) != 3:
         raise InputError(f"{name} = {shortened(values)}; give three components, along x, y and z")
-    x, y, z = (si(value, unit, name=name) for value in values)
+    x, y, z = (number(value, name, unit) for value in values)
     return x, y, z
 
 

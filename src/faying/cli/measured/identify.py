@@ -44,7 +44,7 @@ def command(
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
-    from faying.identify import identification_figure as drawing
+    from faying.identify import identification as drawing
     from faying.identify.of_study import identify
     from faying.output.report_predicted import identified
     from faying.study import Study

@@ -55,7 +55,7 @@ def command(
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
-    from faying.identify import prediction_figure as drawing
+    from faying.identify import prediction as drawing
     from faying.identify.predict import check, predict
     from faying.identify.sampling.follow import choice_of
     from faying.output.prediction import text

@@ -36,7 +36,7 @@ def command(record: Path, **options: Any) -> None:
     universal file with the FRF of a single hit. A band-pass filter and the Hilbert transform give the points.
     """
     from faying.output.table import measured_backbone, text
-    from faying.result import backbone_figure as drawing
+    from faying.result import backbone as drawing
     from faying.style import check_figure, save
 
     if options["plot"]:

@@ -300,7 +300,7 @@ def given_of(
     return out
 
 
-def pressures_of(text: str, points: int = 19) -> Array:
+def pressures_of(text: str) -> Array:
     """Read "FROM:TO", "FROM:TO:POINTS" or one pressure [Pa]; InputError otherwise."""
     import numpy as np
 
@@ -312,13 +312,10 @@ def pressures_of(text: str, points: int = 19) -> Array:
         return np.array(values)
     if not 0 < values[0] < values[1]:
         raise InputError(f'--pressure "{text}": the first must be above 0 and below the second')
-    if len(parts) == 3:
-        if not parts[2].isdigit() or not 2 <= int(parts[2]) <= MAX_POINTS:
-            raise InputError(
-                f'--pressure "{text}": POINTS = {parts[2]}; it must be a whole number from 2 to {MAX_POINTS:,}'
-            )
-        points = int(parts[2])
-    return np.geomspace(values[0], values[1], points)
+    points = parts[2] if len(parts) == 3 else "19"
+    if not points.isdigit() or not 2 <= int(points) <= MAX_POINTS:
+        raise InputError(f'--pressure "{text}": POINTS = {points}; it must be a whole number from 2 to {MAX_POINTS:,}')
+    return np.geomspace(values[0], values[1], int(points))
 
 
 def reached(law: ContactLaw, pressures: Array) -> Array:

@@ -16,7 +16,7 @@ from faying.errors import FayingError, InputError
 from faying.files import write_text
 from faying.output import terminal
 from faying.output.terminal import folded
-from faying.text import json_text
+from faying.text import csv_text, json_text
 from faying.units import show as unit
 
 if TYPE_CHECKING:
@@ -203,10 +203,10 @@ def csv(comparison: Comparison, heat: dict[str, Array]) -> str:
 
     names = ("area", "k_n", "k_t", "loss_n", "loss_t", *(("h",) if heat else ()))
     units = UNITS | {"h": "W/(m^2*K)"}
-    rows = ["law,pressure [Pa]," + ",".join(f"{n} [{units[n] or '-'}]" for n in names) + ",valid"]
+    rows: list[list[str]] = [["law", "pressure [Pa]", *(f"{n} [{units[n] or '-'}]" for n in names), "valid"]]
     for law, r in comparison.responses.items():
         columns = r.quantities() | ({"h": heat[law]} if law in heat else {})
         for i, p in enumerate(comparison.pressure.tolist()):
             cells = [repr(float(columns[n][i])) if n in columns else "" for n in names]
-            rows.append(",".join([law, repr(p), *cells, str(bool(r.valid[i])).lower()]))
-    return "\n".join(rows) + "\n"
+            rows.append([law, repr(p), *cells, str(bool(r.valid[i])).lower()])
+    return csv_text(rows)

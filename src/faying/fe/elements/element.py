@@ -114,13 +114,13 @@ class Element:
             slopes.append((_monomials(places, lower) * exponents[:, axis]) @ coefficients)
         return _monomials(places, exponents) @ coefficients, np.stack(slopes, axis=2)
 
-    def rule(self, degree: int, along: int | None = None) -> tuple[Array, Array, Array, Array]:
+    def rule(self, degree: int) -> tuple[Array, Array, Array, Array]:
         """Points (d, q), weights (q,), shape functions (q, a) and gradients (q, a, d) on the reference element.
 
         Polynomials up to the degree are integrated exactly (up to 4 in tetrahedra), on squares and cubes up to it in
-        each direction; along: the degree along the axis of a wedge where it differs.
+        each direction.
         """
-        return _rule(self, (degree, along))
+        return _rule(self, (degree, None))
 
     @property
     def stiffness_rule(self) -> tuple[Array, Array, Array, Array]:

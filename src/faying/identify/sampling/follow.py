@@ -6,8 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from faying.backbones.backbone import curve_like, median_of
-from faying.backbones.choice import friction_of
+from faying.backbones.backbone import curve_like, friction_of, median_of
 from faying.backbones.result import measured_points
 from faying.errors import InputError
 from faying.identify.backbones import Backbones

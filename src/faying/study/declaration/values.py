@@ -3,6 +3,7 @@
 from typing import Any
 
 from faying import units
+from faying.checks import plain
 from faying.errors import InputError
 
 MAX_COUNT = 1_000_000  # of what is counted, where a key says no less
@@ -58,9 +59,7 @@ def direction(value: Any, name: str) -> tuple[float, float, float]:
 
 def number(value: Any, name: str) -> float:
     """Check one plain number."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or value != value or abs(value) == float("inf"):
-        raise InputError(f"{name} = {value!r} should be a plain finite number, for example 0.3")
-    return float(value)
+    return plain(value, name, as_text=False)
 
 
 def whole_number(value: Any, name: str, most: int = MAX_COUNT) -> int:
