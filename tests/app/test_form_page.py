@@ -37,7 +37,9 @@ def put(example, folder):  # noqa: F811
 
 
 def test_from_the_form_alone_by_keyboard_alone_to_a_result(browser, server, example, tmp_path):  # noqa: F811
-    (tmp_path / "study.toml").write_text(put(example, tmp_path).replace('model = "jk"', 'model = "auto"'))
+    text = put(example, tmp_path).replace('model = "jk"', 'model = "auto"')
+    text = text.replace("levels = []\nintervals = false\n", "")
+    (tmp_path / "study.toml").write_text(text)
     with page_at(browser, server) as page:
         until(page, "document.querySelectorAll('#groups fieldset').length > 5")
         before = page.input_value("#text")
