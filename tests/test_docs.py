@@ -46,6 +46,7 @@ def checkout(tmp_path, monkeypatch):
 
 # a minute and more: tests/loads, tests/identify, tests/measured and tests/halfspace have the same in small
 LONG = {"bracket-under-10-g.md", "intervals.md", "with-intervals.md", "hammer-test.md", "speed.md"}
+LONG |= {"bolted-joint-numbers.md", "own-joint.md"}  # tests/sheet, tests/export and tests/setup
 COMMANDED = [pytest.param(p, marks=[pytest.mark.slow] * (p.name in LONG), id=str(p.relative_to(ROOT))) for p in PAGES]
 
 

@@ -22,6 +22,8 @@ from faying.result.result import Result
 from faying.result.run_record import MeasuredComparison, Receptance
 
 pytest.importorskip("sphinx", reason="the site needs the group docs")
+# half a minute to build; test_sources looks at what it is made from
+pytestmark = [] if os.environ.get("FAYING_SITE") else pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 BROWSER = next((path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), "")
