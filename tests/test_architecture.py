@@ -152,30 +152,11 @@ def test_every_class_has_a_name_of_its_own(nodes):
 
 
 # words that need their author; each has a word of the field
-PRIVATE_WORDS = {
-    "begun",
-    "Beyond",
-    "Corners",
-    "Frame",
-    "grips",
-    "held",
-    "Kept",
-    "led_on",
-    "NearbyModes",
-    "past_end",
-    "Recipe",
-    "Seen",
-    "settled",
-    "sprung",
-    "standing",
-    "stay",
-    "told",
-    "upheld",
-    "vibrating",
-    "walked",
-    "Witness",
-    "worn",
-}
+PRIVATE_WORDS = (
+    {"begun", "Beyond", "Corners", "Frame", "grips", "held", "Kept", "led_on", "NearbyModes"}
+    | {"past_end", "Recipe", "Seen", "settled", "sprung", "standing", "stay", "told", "upheld"}
+    | {"vibrating", "walked", "Witness", "worn"}
+)
 
 
 # a limit says what it limits: MAX_NEWTON_STEPS

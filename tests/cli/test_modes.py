@@ -46,20 +46,8 @@ def fault(capsys, argv):
 def test_a_study_and_its_matrices_have_the_same_modes(exported, capsys):
     of_study = values(capsys, ["modes", str(exported / "study.toml"), "--count", "9"])
     out = exported / "out"
-    of_files = values(
-        capsys,
-        [
-            "modes",
-            "--stiffness",
-            str(out / "stiffness.npz"),
-            "--mass",
-            str(out / "mass.npz"),
-            "--count",
-            "9",
-            "--shift",
-            "800 Hz",
-        ],
-    )
+    files = ["--stiffness", str(out / "stiffness.npz"), "--mass", str(out / "mass.npz")]
+    of_files = values(capsys, ["modes", *files, "--count", "9", "--shift", "800 Hz"])
     assert np.all(of_study[:6] < 1)
     assert of_files[6:] == pytest.approx(of_study[6:], rel=1e-10)
     assert len((out / "dofs.txt").read_text().splitlines()) == load_npz(out / "mass.npz").shape[0]
