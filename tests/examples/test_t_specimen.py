@@ -45,6 +45,7 @@ def test_levels_and_intervals_change_no_frequency(outcome, full):
     data, results = full
     expected = np.array(outcome[0]["frequencies"]["values"])
     assert np.array(data["frequencies"]["values"]) == pytest.approx(expected, rel=1e-8)
+    assert (results / "report.html").stat().st_size < 3e6
     assert {"intervals.svg", "slip.svg"} <= {path.name for path in results.iterdir()}
 
 
