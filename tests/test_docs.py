@@ -46,7 +46,12 @@ def checkout(tmp_path, monkeypatch):
 
 # a minute and more: tests/loads, tests/identify, tests/measured and tests/halfspace have the same in small
 LONG = {"bracket-under-10-g.md", "intervals.md", "with-intervals.md", "hammer-test.md", "speed.md"}
-COMMANDED = [pytest.param(p, marks=[pytest.mark.slow] * (p.name in LONG), id=str(p.relative_to(ROOT))) for p in PAGES]
+LONG |= {"bolted-joint-numbers.md", "own-joint.md"}  # tests/sheet, tests/export and tests/setup
+LONG_PYTHON = {"intervals.md", "plates-and-bolts.md", "first-study.md"}  # tests/identify, tests/examples, tests/typed
+COMMANDED, CALLED = (
+    [pytest.param(p, marks=[pytest.mark.slow] * (p.name in long), id=str(p.relative_to(ROOT))) for p in PAGES]
+    for long in (LONG, LONG_PYTHON)
+)
 
 
 @pytest.mark.parametrize("page", COMMANDED)
@@ -89,7 +94,7 @@ def test_one_folder_holds_the_studies_of_all_pages(checkout):
         subprocess.run([sys.executable, "-m", "faying", *shlex.split(line)], capture_output=True, check=True)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+@pytest.mark.parametrize("page", CALLED)
 def test_python_blocks(page, checkout):
     for block in blocks(page, "python"):
         done = subprocess.run([sys.executable, "-c", block], capture_output=True, text=True, check=False)

@@ -170,22 +170,25 @@ def test_decimals_of_a_page_have_their_zero(page):
     assert not faults, "write 0.31 for .31\n" + "\n".join(faults)
 
 
-def test_decimals_of_messages_and_docstrings_have_their_zero():
+@pytest.fixture(scope="module")
+def messages():
+    """File, line and text of each string of the source."""
+    return [(path, *one) for path in SOURCES for one in texts(path.read_text(encoding="utf-8"))]
+
+
+def test_decimals_of_messages_and_docstrings_have_their_zero(messages):
     faults = [
         f"{path.relative_to(ROOT)}:{line}: {text.strip()[:90]}"
-        for path in SOURCES
-        if path.relative_to(ROOT / "src" / "faying").as_posix() not in NOT_TEXT
-        for line, text in texts(path.read_text(encoding="utf-8"))
-        if DECIMAL.search(text)
+        for path, line, text in messages
+        if path.relative_to(ROOT / "src" / "faying").as_posix() not in NOT_TEXT and DECIMAL.search(text)
     ]
     assert not faults, "write 0.31 for .31\n" + "\n".join(faults)
 
 
-def test_messages_have_no_private_words_and_no_path_of_a_machine():
+def test_messages_have_no_private_words_and_no_path_of_a_machine(messages):
     faults = [
         f"{path.relative_to(ROOT)}:{line}: {said}"
-        for path in SOURCES
-        for line, text in texts(path.read_text(encoding="utf-8"))
+        for path, line, text in messages
         for _, said in found(IN_MESSAGES, text)
     ]
     assert not faults, "\n".join(faults)

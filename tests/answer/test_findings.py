@@ -15,10 +15,11 @@ from faying.study import Study
 
 
 def coarse(folder, law="", extra=""):
-    """The study of `faying init` on a coarse mesh, under another law where one is given."""
+    """The study of `faying init` on a coarse mesh, without intervals and levels, under another law if one is given."""
     path = folder / "study.toml"
     write(path, force=True)
     text = path.read_text().replace('size = "8 mm"', 'size = "14 mm"').replace('joint" = "4 mm"', 'joint" = "9 mm"')
+    text = text.replace("[modes]\n", "[modes]\nintervals = false\nlevels = []\n")
     if law:
         text = text.replace('model = "auto"', f'model = "{law}"')
     path.write_text(text + extra)

@@ -60,6 +60,7 @@ def test_stiffness_at_the_points_is_that_of_the_law(study, result):
     assert result.k_t == pytest.approx(law.at_pressure(result.pressure).k_t, rel=2e-5)
 
 
+@pytest.mark.slow
 def test_sum_of_springs_does_not_depend_on_the_mesh(study, result):
     """Refined twice: the total of the joint's springs stays within 1 %."""
 

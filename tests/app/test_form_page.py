@@ -3,6 +3,8 @@
 import shutil
 import tomllib
 
+import pytest
+
 from tests.app.test_page import example, page_at, set_text  # noqa: F401
 from tests.helpers.browser import WAIT, until
 
@@ -36,8 +38,11 @@ def put(example, folder):  # noqa: F811
     return (folder / "study.toml").read_text()
 
 
+@pytest.mark.slow
 def test_from_the_form_alone_by_keyboard_alone_to_a_result(browser, server, example, tmp_path):  # noqa: F811
-    (tmp_path / "study.toml").write_text(put(example, tmp_path).replace('model = "jk"', 'model = "auto"'))
+    text = put(example, tmp_path).replace('model = "jk"', 'model = "auto"')
+    text = text.replace("levels = []\nintervals = false\n", "")
+    (tmp_path / "study.toml").write_text(text)
     with page_at(browser, server) as page:
         until(page, "document.querySelectorAll('#groups fieldset').length > 5")
         before = page.input_value("#text")

@@ -21,6 +21,7 @@ def example(tmp_path_factory):
     study = folder / "study.toml"
     template.write(study)
     text = study.read_text().replace('model = "auto"', 'model = "jk"').replace('["8 kN", "15 kN"]', '"6 kN"')
+    text = text.replace("[modes]\n", "[modes]\nlevels = []\nintervals = false\n")
     text = re.sub("(?m)^(scan|counter) = .*\n", "", text)  # no contact to solve: D and G in place of the scan
     study.write_text(text.replace("[surface]\n", '[surface]\nD = 2.39\nG = "1.53e-10 m"\nscan_area = "16 mm^2"\n'))
     return folder
@@ -80,6 +81,7 @@ def test_faces_are_picked_into_a_joint(browser, server, example, tmp_path):
     assert "[[joint]]" in (tmp_path / "study.toml").read_text()
 
 
+@pytest.mark.slow  # test_from_the_text_alone_to_a_result runs a smaller study
 def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, server, tmp_path_factory, tmp_path):
     """The newcomer's whole session: two files are dropped, nothing is typed."""
     given = tmp_path_factory.mktemp("given")

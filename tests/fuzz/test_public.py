@@ -172,29 +172,10 @@ CALLS = {
 MADE = {"FractalFit", "Combined", "Comparison", "Response", "ContactLaw", "Parameter", "RIGID", "CATALOGUE"}
 MADE |= {"Roughness"}
 MADE |= {"synthesize", "asperity", "laws", "contact"}
-INNER = {
-    "normal_stiffness",
-    "slip",
-    "at_closure",
-    "from_entries",
-    "from_surface",
-    "rough_for",
-    "watched",
-    "closing",
-    "contact_at",
-    "resolution",
-}
-INNER |= {
-    "value",
-    "resolution_error",
-    "stiffness_of_contact",
-    "indented",
-    "needed_for",
-    "supplies",
-    "check",
-    "read",
-    "text",
-}
+INNER = {"normal_stiffness", "slip", "at_closure", "from_entries", "from_surface"}
+INNER |= {"rough_for", "watched", "closing", "contact_at", "resolution"}
+INNER |= {"value", "resolution_error", "stiffness_of_contact", "indented", "needed_for"}
+INNER |= {"supplies", "check", "read", "text"}
 INNER |= {"from_score", "from_standard", "log_density", "quantile", "score", "standardised", "within"}
 OF_EVERY_LAW = {"at_pressure", "plot", "with_"}
 

@@ -2,6 +2,8 @@
 
 from math import cos, pi, sin
 
+from faying.geometry.cad import write_step
+
 MM = 1e-3
 
 
@@ -15,10 +17,9 @@ def _shapes():
 
 
 def _write(path, **parts):
-    occ, _ = _shapes()
     for name, shape in parts.items():
         shape.name = name
-    occ.Compound(list(parts.values())).WriteStep(str(path))
+    write_step(path, parts.values())
     return path
 
 

@@ -189,6 +189,7 @@ def test_names_that_the_geometry_lacks_are_named(study, tmp_path):
     assert "temperature of 'nut', which is neither a part nor a bolt" in str(fault.value)
 
 
+@pytest.mark.slow
 def test_intervals_follow_preload_and_friction(study, tmp_path):
     """A force of the bolt is its preload and a change that hardly moves; use of friction goes as 1/(mu F)."""
     text = study.read_text().replace("friction = 0.25", 'friction = "0.25 +- 0.02"')

@@ -218,13 +218,3 @@ def test_a_report_is_small(address):
     from urllib.parse import urlparse
 
     assert Path(urlparse(address).path).stat().st_size < 2e6
-
-
-@pytest.mark.slow
-def test_the_report_of_the_t_specimen_is_below_3_mb(tmp_path):
-    from pathlib import Path
-
-    from faying.answer.run import run
-
-    found = run(Path(__file__).parents[2] / "examples" / "t-specimen" / "study.toml")
-    assert len(report.html(found).encode()) < 3e6

@@ -346,6 +346,7 @@ def test_loads_of_the_sheet_are_those_of_a_case(made):
     assert sheet.row("F_SAM").result.value == pytest.approx(at_greatest["pull"] - at_greatest["warm"], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_case_may_have_the_name_that_the_sheet_gives_to_heat_alone(made):
     """The case that the study calls so stays what it is; that of the temperatures has another name."""
     named = {"name": "heat of pull", "force": OTHER["force"]}

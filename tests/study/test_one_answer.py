@@ -99,8 +99,14 @@ def by_command(*words):
     return json.loads(out.output)
 
 
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("scan", SCANS)
+@pytest.mark.parametrize(
+    ("scan", "model"),
+    [
+        pytest.param(scan, model, marks=[pytest.mark.slow] * (scan == "milled" and model in ("me", "gw-ke", "persson")))
+        for scan in SCANS
+        for model in MODELS
+    ],
+)
 def test_every_route_has_the_same_answer(folder, scan, model):
     """Study files (run, sweep, identify and predict, check, attach), the command, and three ways in Python."""
     file = file_of(folder, scan, model)

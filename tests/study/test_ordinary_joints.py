@@ -72,6 +72,7 @@ def test_the_thread_pulls_evenly_over_the_length_that_it_engages(fitted):
     assert bolt.thread.high == pytest.approx(15e-3)
 
 
+@pytest.mark.slow
 def test_the_screwed_joint_carries_its_preload_and_lies_between_free_and_bonded(screwed):
     found = run(replace(screwed, modes=replace(screwed.modes, intervals=False)))
     force = sum(screwed.preloads[0].forces)

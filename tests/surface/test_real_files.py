@@ -161,7 +161,7 @@ def fuzz(scans, tmp_path, rounds, seed):
 
 
 def test_mutated_files_are_read_or_refused_in_words(scans, tmp_path):
-    fuzz(scans, tmp_path, 4, 1)
+    fuzz(scans, tmp_path, 2, 1)
 
 
 @pytest.mark.slow

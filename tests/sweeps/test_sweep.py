@@ -51,7 +51,7 @@ def done(plan, tmp_path_factory):
 
 @pytest.mark.parametrize(
     "place",
-    [(0, 0), pytest.param((1, 1), marks=pytest.mark.slow), (3, 2), pytest.param((2, 0), marks=pytest.mark.slow)],
+    [(0, 0), *(pytest.param(place, marks=pytest.mark.slow) for place in ((1, 1), (3, 2), (2, 0)))],
 )
 def test_points_are_those_of_full_runs(plan, done, place):
     D, force = (axis.values[i] for axis, i in zip(done.axes, place, strict=True))

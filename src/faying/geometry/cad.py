@@ -74,6 +74,17 @@ def read_step(path: Path) -> Any:
     return _geometry(path).shape
 
 
+def write_step(path: Path, solids: Sequence[Any]) -> None:
+    """Write solids [mm] as a STEP file, which is the same file whenever it is written.
+
+    The kernel would put the time into it, and how many files it has written.
+    """
+    kernel().Compound(list(solids)).WriteStep(str(path))
+    text = path.read_text(encoding="latin-1")
+    text = re.sub(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'", "'2000-01-01T00:00:00'", text, count=1)
+    path.write_text(re.sub(r"(STEP translator \S+) \d+", r"\1 1", text), encoding="latin-1")
+
+
 def _geometry(path: Path) -> Any:
     check_head(path)
     occ = kernel()
