@@ -9,7 +9,7 @@ from faying.identify.prediction import Prediction
 from faying.loads.record import LoadCases
 from faying.misuse import checked_call
 from faying.result.backbone import Backbone
-from faying.result.fields import RECORD, read_tree
+from faying.result.fields import RECORD, RESULT_FILE, read_tree
 from faying.result.result import Result
 
 Saved = Result | Backbone | Prediction | Identification | LoadCases
@@ -21,7 +21,7 @@ def load(path: str | Path) -> Saved:
     """Read a file that Faying has saved: a result, a backbone, a prediction, an identification or load cases.
 
     Args:
-        path: The file.
+        path: The file, or the folder of a run.
 
     Returns:
         What was saved, which the file says; it equals what was written.
@@ -29,6 +29,8 @@ def load(path: str | Path) -> Saved:
     Raises:
         ReadError: The file is missing or damaged, is none of these, or lacks a variable, which is named.
     """
+    path = Path(path)
+    path = path / RESULT_FILE if path.is_dir() else path
     tree = read_tree(path)
     name = tree.attributes.get(RECORD)
     for kind in KINDS:

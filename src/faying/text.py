@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence, Sized
 from math import isfinite
 from textwrap import shorten
@@ -11,6 +12,22 @@ from typing import Any
 from faying.typing import Index
 
 MAX_NAMES = 6
+# dots of one name of a table, forty in a row: a study nests four deep, and the parser's memory grows with their square
+DEEP = re.compile(r"(?:\.[^.,=\[\]\n]{1,80}){40}")
+
+
+def toml(text: str) -> dict[str, Any]:
+    """The tables of a TOML text. Raises ValueError where it is not TOML, or nests deeper than any study."""
+    import tomllib
+
+    deep = DEEP.search(text)
+    try:
+        if deep is not None:
+            raise RecursionError
+        return tomllib.loads(text)
+    except RecursionError:
+        line = "" if deep is None else f" (at line {text.count(chr(10), 0, deep.start()) + 1})"
+        raise ValueError(f"tables or brackets are nested too deep{line}") from None
 
 
 def listed(names: Iterable[str], most: int = MAX_NAMES) -> str:

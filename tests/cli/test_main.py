@@ -7,10 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
 
 import faying
 from faying.cli import main
+from faying.cli.main import COMMANDS, cli
+from faying.cli.options import NamedPath
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -170,3 +173,30 @@ def test_a_name_beyond_ascii_runs_in_the_plain_locale(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert "Träger" in (tmp_path / "study" / "results" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(("name", "said"), [("", "the name is empty"), (300 * "x", "more than 255 bytes")])
+def test_no_command_takes_a_path_that_no_file_can_have(command, name, said):
+    context = click.Context(cli, info_name="faying")
+    every = cli.get_command(context, command).params
+    assert not [one.name for one in every if isinstance(one.type, click.Path) and not isinstance(one.type, NamedPath)]
+    for one in every:
+        if isinstance(one.type, NamedPath):
+            with pytest.raises(click.BadParameter, match=said):
+                one.type.convert(name, one, context)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--z-unit", "um", "--D", "2.39"], "--z-unit: only with --scan"),
+        (["--stability"], "--stability: only with --scan"),
+        (["--scan", str(EXAMPLES / "t-specimen" / "milled.x3p"), "--stability", "--csv", "q.csv"], "leave out --csv"),
+    ],
+)
+def test_options_of_law_that_do_not_apply_are_faults(options, said, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(["law", "--material", "45 steel", *options])
+    assert stop.value.code == 1
+    assert said in capsys.readouterr().err

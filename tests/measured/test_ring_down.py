@@ -8,6 +8,7 @@ from scipy.integrate import cumulative_simpson, simpson, solve_ivp
 from scipy.optimize import brentq
 
 import faying
+from faying.errors import InputError
 from faying.measured.frf import FRF
 from faying.measured.records import frf_from_records
 from faying.measured.ring_down import MeasuredBackbone, ring_down, ring_down_of_frf
@@ -207,3 +208,19 @@ def test_a_table_of_another_form_is_refused(tmp_path, text, message):
     file.write_text(text)
     with pytest.raises(faying.ReadError, match=re.escape(message)):
         MeasuredBackbone.read(file)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"signal": []}, "shape \\(0,\\)"),
+        ({"signal": 1.0}, "shape \\(\\)"),
+        ({"start": np.nan}, "start = nan s"),
+        ({"start": 1e9}, "ends before 1e\\+09 s"),
+        ({"cycles": -1}, "cycles = -1"),
+    ],
+)
+def test_records_and_stretches_that_cannot_be_are_refused(change, said):
+    given = {"signal": decay(np.arange(8192) / RATE), "sampling_rate": RATE, "band": (70, 130)} | change
+    with pytest.raises(InputError, match=said):
+        ring_down(**given)

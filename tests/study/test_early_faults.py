@@ -1,6 +1,7 @@
 """What a law lacks is told before anything is meshed."""
 
 import tomllib
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +12,12 @@ from faying.answer.run import run
 from faying.case import case
 from faying.case.case import build
 from faying.cli import main
+from faying.errors import ReadError
 from faying.geometry.selectors import Selector
 from faying.study import Study
 from faying.sweeps.axes import axis_of
 from faying.sweeps.sweep import sweep
+from faying.text import toml
 from tests.helpers.studies import write
 
 IN_FULL = {"density": "3e9 1/m^2", "radius": "60 um", "sigma": "0.5 um"}
@@ -126,3 +129,19 @@ def test_init_of_a_folder_asks_for_a_file(tmp_path, monkeypatch, capsys):
             main(["init", name])
         assert stop.value.code == 1
         assert "is a folder; name the study's file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["a." * 30_000 + "b = 1", "a = " + 20_000 * "[", "[" + "a." * 5_000 + "b]"])
+def test_a_text_that_nests_without_end_is_refused_in_little_memory(tmp_path, text):
+    """The parser of Python takes 3 GB for 60 kB of dotted names."""
+    (tmp_path / "deep.toml").write_text(f'title = "x"\n{text}\n')
+    tracemalloc.start()
+    with pytest.raises(ReadError, match="nested too deep"):
+        Study.read(tmp_path / "deep.toml")
+    assert tracemalloc.get_traced_memory()[1] < 1e8
+    tracemalloc.stop()
+
+
+def test_dots_of_numbers_and_names_nest_nothing(tmp_path):
+    numbers = ", ".join(f"{k}.5" for k in range(200))
+    assert toml(f"a = [{numbers}]\n[b.c.d]\nfile = 'one.two.three.x3p'")["b"]["c"]["d"]["file"] == "one.two.three.x3p"

@@ -2,7 +2,6 @@
 
 import hashlib
 import re
-import tomllib
 from base64 import b64encode
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
@@ -17,6 +16,7 @@ from faying.files import make_folder, write_atomically
 from faying.result import Result
 from faying.setup.edit import written
 from faying.setup.lines import KeyPath, name_of
+from faying.text import toml
 from faying.units import load_text
 
 MAX_RUNS = 8  # results that are kept
@@ -142,7 +142,7 @@ def changes(before: str, after: str) -> list[list[str]]:
 
 def _parsed(text: str) -> Mapping[str, Any]:
     try:
-        return tomllib.loads(text)
+        return toml(text)
     except ValueError:
         return {}
 

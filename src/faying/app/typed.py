@@ -1,6 +1,5 @@
 """What can be said of a study's text while it is typed: faults of its form and of its keys, in milliseconds."""
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +7,7 @@ from faying.errors import FayingError
 from faying.setup.lines import key_of, line_of, line_of_fault, lines_of
 from faying.study import Study
 from faying.study.declaration.reader import StudyFaults
+from faying.text import toml
 
 
 def faults_of(text: str, folder: Path) -> list[dict[str, Any]]:
@@ -18,8 +18,8 @@ def faults_of(text: str, folder: Path) -> list[dict[str, Any]]:
         folder: in which the files lie that it names.
     """
     try:
-        data = tomllib.loads(text)
-    except (ValueError, RecursionError) as fault:  # nested without end, a number of thousands of digits
+        data = toml(text)
+    except ValueError as fault:
         return [_fault(f"the text is not TOML: {fault}", line_of_fault(fault, text))]
     lines = lines_of(text)
     try:

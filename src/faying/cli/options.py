@@ -10,8 +10,24 @@ from faying import units
 from faying.errors import InputError
 from faying.text import json_text
 
-PATH = click.Path(path_type=Path)
-FILE = click.Path(dir_okay=False, path_type=Path)
+MAX_NAME = 255  # bytes of the name of a file, on the file systems in use
+
+
+class NamedPath(click.Path):
+    """A path with a name that a file can have: a fault before any work, not behind it."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path."""
+        names = Path(value).parts
+        if not str(value).strip():
+            self.fail("the name is empty; give the path of a file or folder, such as results", param, ctx)
+        if any(len(name.encode(errors="surrogateescape")) > MAX_NAME for name in names):
+            self.fail(f"a name of more than {MAX_NAME} bytes; give a shorter one", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+PATH = NamedPath(path_type=Path)
+FILE = NamedPath(dir_okay=False, path_type=Path)
 
 
 def show(

@@ -60,6 +60,7 @@ def command(
     from faying.export import universal
     from faying.numerics.solve import MPI
     from faying.output import report
+    from faying.result.fields import RESULT_FILE
     from faying.study import Study
 
     plan = Study.read(study)
@@ -72,7 +73,7 @@ def command(
     folder = out or plan.results
     every = [*stages(plan), *([] if no_files else ["report"])]
     bar = Shown("study", progress, every)
-    with nullcontext() if no_files else together(folder, "give another with --out", [report.RESULT]) as hidden, bar:
+    with nullcontext() if no_files else together(folder, "give another with --out", [RESULT_FILE]) as hidden, bar:
         result = run(plan, report=lambda stage, done, _: bar(stage, done, len(every)), engine=engine, refine=refine)
         files = []
         if hidden is not None:

@@ -55,7 +55,7 @@ class Quantiles:
 
     Args:
         levels: Shares of the samples below (q,) [-].
-        frequencies: (q, load, mode) [Hz], of elastic modes in rising order.
+        frequencies: (q, load, mode) [Hz], each mode of the median followed by its shape.
         loss_factors: (q, load, mode) [-]; NaN where no law predicts loss.
         slopes: Change with preload (q, mode) [Hz/N], by a line through all loads; NaN for a single load.
         paired: Frequencies of the test's modes (q, load, test mode) [Hz]; None where the study has no test.
@@ -102,7 +102,7 @@ class Prediction(Recorded):
     loads: Array = variable("load", "N", "preload of the first bolt", "preload")
     values: Array = variable("sample input", "", "values drawn, in the unit of each input", "samples/value")
     frequencies: Array = variable(
-        "sample load mode", "Hz", "frequencies of elastic modes", "samples/frequency", gaps=True
+        "sample load mode", "Hz", "frequencies of the median's modes", "samples/frequency", gaps=True
     )
     loss_factors: Array = variable("sample load mode", "1", "modal loss factors", "samples/loss_factor", gaps=True)
     open_share: Array = variable("sample load", "1", "share of the joints that is open", "samples/", gaps=True)

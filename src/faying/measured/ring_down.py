@@ -6,7 +6,7 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-from faying.checks import number
+from faying.checks import number, whole
 from faying.columns import read_columns
 from faying.errors import InputError, ReadError
 from faying.files import write_text
@@ -184,9 +184,12 @@ def ring_down(
     x = np.asarray(signal, dtype=float)
     if quantity not in MOTIONS:
         raise InputError(f"quantity {quantity!r}: use one of {', '.join(MOTIONS)}")
-    if x.ndim != 1 or not np.all(np.isfinite(x)):
-        raise InputError(f"the record has the shape {x.shape} or has NaN; give one row of finite samples")
     number(sampling_rate, "sampling_rate", "1/s", least=0)
+    start = number(start, "start", "s", least=0, ends="[)")
+    if x.ndim != 1 or not len(x) > start * sampling_rate or not np.all(np.isfinite(x)):
+        raise InputError(
+            f"the record has the shape {x.shape}, has NaN or ends before {start:g} s; give one row of finite samples"
+        )
     _check_band(band, sampling_rate / 2)
     x = x[round(start * sampling_rate) :]
     padded = 2 * len(x)  # so that the end does not wrap round onto the beginning
@@ -259,6 +262,7 @@ def _curve(
     analytic: Complex, rate: float, band: tuple[float, float], power: int, cycles: int, start: float
 ) -> MeasuredBackbone:
     """Slopes of ln amplitude and phase of an analytic signal, stretch by stretch."""
+    whole(cycles, "cycles", least=1)
     width = band[1] - band[0]
     cut = int(np.ceil(RINGING / (EDGE * width) * rate))
     stretch = int(np.ceil(cycles / ((band[0] + band[1]) / 2) * rate)) // 2 * 2 + 1

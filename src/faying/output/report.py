@@ -19,7 +19,7 @@ from faying.output.sections import ReportSection, sections
 from faying.result import Result, backbone, interval_figure, level_figure
 from faying.result import figure as structure
 from faying.result import response_figure as response
-from faying.result.fields import declared
+from faying.result.fields import RESULT_FILE, declared
 from faying.style import WIDE, drawing, new_figure, uncollected
 
 
@@ -197,7 +197,6 @@ SHAPES = (
     "Mode shapes at the greatest preload, drawn at one scale; colour is the motion over the greatest of the mode. "
     "Names: what most of the motion is, in slices across the longest side, or the part that moves most and its axis."
 )
-RESULT = "result.nc"  # is kept where the rest does not fit
 TEST = "test_"  # the figures of the hammer test begin with it
 
 
@@ -356,7 +355,7 @@ def write(result: Result, folder: Path) -> list[Path]:
 
     With a hammer test: comparison.csv, and its figures with test_ before their names.
     """
-    made = [result.save(folder / RESULT), result.to_csv(folder / "modes.csv")]
+    made = [result.save(folder / RESULT_FILE), result.to_csv(folder / "modes.csv")]
     if result.hammer is not None:
         made.append(write_text(folder / "comparison.csv", result.hammer.csv_text()))
     pictures = {}
@@ -385,6 +384,6 @@ def write_report(result: Result, folder: str | Path, *, uff: bool = False) -> li
     Raises:
         InputError: The folder cannot be used, or a response has no direction that universal files know.
     """
-    with together(Path(folder), "give another folder", [RESULT]) as hidden:
+    with together(Path(folder), "give another folder", [RESULT_FILE]) as hidden:
         files = [*write(result, hidden), *(universal.write(result, hidden) if uff else [])]
     return [Path(folder) / file.name for file in files]

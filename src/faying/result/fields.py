@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 Kind = TypeVar("Kind")
 KEY = "variable"
 MAX_ARRAYS = 10  # that a summary has a line for
+RESULT_FILE = "result.nc"  # in the folder of a run
 RECORD = "faying_record"  # attribute of a file: what it holds
 PRELOAD = "preload"  # numbers that belong to the labels of loads
 

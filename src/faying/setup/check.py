@@ -1,6 +1,5 @@
 """What can be said of a study in seconds, before anything is solved: faults, notes, what a run will need."""
 
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
@@ -37,7 +36,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
 from faying.style import Summary
-from faying.text import cut
+from faying.text import cut, toml
 from faying.units import show, show_area
 
 MAX_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
@@ -214,8 +213,8 @@ def _toml_line(file: Path) -> int | None:
     """The line at which a file stops being TOML."""
     text = file.read_text(encoding="utf-8", errors="replace")
     try:
-        tomllib.loads(text)
-    except (ValueError, RecursionError) as fault:  # nested without end, a number of thousands of digits
+        toml(text)
+    except ValueError as fault:
         return line_of_fault(fault, text)
     return None
 

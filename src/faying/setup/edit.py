@@ -2,13 +2,13 @@
 
 import json
 import re
-import tomllib
 from collections.abc import Iterator
 from copy import deepcopy
 from typing import Any
 
 from faying.errors import InputError
 from faying.setup.lines import KeyPath, Statement, name_of, statements
+from faying.text import toml
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _BLANK = re.compile(r"[ \t]*\r?\n")
@@ -34,8 +34,8 @@ def edited(text: str, path: KeyPath, value: Any) -> str:
     new = _with_line_end(_edit(text, data, wanted, path, value))
     try:
         new.encode()
-        found = tomllib.loads(new)
-    except (ValueError, RecursionError):
+        found = toml(new)
+    except ValueError:
         found = None
     if not any(_same(found, one) for one in (_without_empty(wanted, path) if value is None else [wanted])):
         raise InputError(f"{name_of(path)} is written in a way that cannot be changed alone; change it in the text")
@@ -45,8 +45,8 @@ def edited(text: str, path: KeyPath, value: Any) -> str:
 def parsed(text: str) -> dict[str, Any]:
     """What a text says. Raises InputError where it is not TOML."""
     try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as fault:  # nested without end, a number of thousands of digits
+        return toml(text)
+    except ValueError as fault:
         raise InputError(f"the text is not TOML: {fault}; correct it first") from None
 
 

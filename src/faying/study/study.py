@@ -1,6 +1,5 @@
 """The study file: what a user writes in TOML, checked and in SI units."""
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -36,6 +35,7 @@ from faying.study.keys.uncertain import Known, UncertainChoice, extracted, read_
 from faying.study.load import Load
 from faying.study.results_folder import PLAIN, results_folder
 from faying.style import Summary
+from faying.text import toml
 
 
 @checked_call
@@ -162,6 +162,7 @@ class Study(Summary):
         return replace(Study.from_dict(data, folder=self.folder, where=f"{path} changed", text=text), name=self.name)
 
     @classmethod
+    @checked_call
     def read(cls, path: "str | Path | Study") -> "Study":
         """Read a study file. ReadError where there is none or it is not TOML, InputError with all faults otherwise.
 
@@ -174,9 +175,7 @@ class Study(Summary):
             raise ReadError(f"no file {file}; write one with: faying init {file}")
         try:
             text = file.read_text(encoding="utf-8")
-            data = tomllib.loads(text)
-        except RecursionError:
-            raise ReadError(f"{file} is not TOML that a study has: its brackets are nested too deep") from None
+            data = toml(text)
         except ValueError as fault:  # of TOML, of UTF-8, or of an integer of thousands of digits
             text = str(fault).partition("; use sys.")[0]
             raise ReadError(f"{file} is not TOML: {text}") from None

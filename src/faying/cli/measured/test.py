@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from faying import units
-from faying.cli.options import FILE, PATH, frequency_band
+from faying.cli.options import FILE, PATH, NamedPath, frequency_band
 from faying.errors import InputError
 from faying.file_kinds import taken
 from faying.text import in_columns, json_text
@@ -41,7 +41,7 @@ from faying.text import in_columns, json_text
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option(
-    "--plot", type=click.Path(dir_okay=False), help="Write the stabilisation diagram and a fitted FRF (png, pdf, svg)."
+    "--plot", type=NamedPath(dir_okay=False), help="Write the stabilisation diagram and a fitted FRF (png, pdf, svg)."
 )
 @click.option("--out", type=FILE, help="Write modes and FRFs as a universal file.")
 def command(

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from faying.cli.options import NamedPath
 from faying.cli.progress import Shown
 from faying.errors import FayingError, InputError, ReadError
 from faying.text import json_text
@@ -57,11 +58,11 @@ NEEDED = ("R", "h_a")
 @click.option("--layer-thickness", metavar="LENGTH", help="Thickness of the layer.")
 @click.option("--elements", type=click.IntRange(4, 400), default=40, show_default=True, help="Over the contact radius.")
 @click.option("--steps", type=click.IntRange(1, 100_000), help="Load steps [1.5 for each contact element].")
-@click.option("--table", "table_file", type=click.Path(), help=f"CSV of cases with columns from {', '.join(COLUMNS)}.")
+@click.option("--table", "table_file", type=NamedPath(), help=f"CSV of cases with columns from {', '.join(COLUMNS)}.")
 @click.option("--processes", type=click.IntRange(1, 1024), help="For --table [the number of cores].")
-@click.option("--netcdf", type=click.Path(dir_okay=False), help="Write histories and results.")
+@click.option("--netcdf", type=NamedPath(dir_okay=False), help="Write histories and results.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
-@click.option("--plot", type=click.Path(dir_okay=False), help="Figure of one case with the published laws.")
+@click.option("--plot", type=NamedPath(dir_okay=False), help="Figure of one case with the published laws.")
 def command(
     table_file: str | None,
     processes: int | None,

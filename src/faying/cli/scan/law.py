@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from faying.cli.options import PATH, quantity
+from faying.cli.options import PATH, NamedPath, quantity
 from faying.errors import InputError
 from faying.files import write_text
 from faying.output.terminal import folded
@@ -99,13 +99,13 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
 @click.option("--stability", is_flag=True, help="k_n on parts of the scan and on fewer points, at the middle pressure.")
 @click.option(
     "--contact-map",
-    type=click.Path(dir_okay=False),
+    type=NamedPath(dir_okay=False),
     help="Picture of where the scan touches at the last pressure; with halfspace among --models.",
 )
 @click.option("--conductance", is_flag=True, help="Also the thermal conductance h from k_n, for clean metal in vacuum.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
-@click.option("--csv", "csv_file", type=click.Path(dir_okay=False), help="Write all columns to a CSV file.")
-@click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
+@click.option("--csv", "csv_file", type=NamedPath(dir_okay=False), help="Write all columns to a CSV file.")
+@click.option("--plot", type=NamedPath(dir_okay=False), help="Write a figure (png, pdf, svg).")
 def command(
     model: str | None,
     settings: tuple[str, ...],
@@ -128,8 +128,14 @@ def command(
     from faying.contact.build import find
 
     on_scan = options["scan"] is not None
-    if not on_scan and (stability or options["counter"] is not None):
-        raise InputError("--stability and --counter go with --scan FILE")
+    alone = [f"--{name.replace('_', '-')}" for name in OF_SCAN if options[name] is not None] + [
+        "--stability"
+    ] * stability
+    if alone and not on_scan:
+        raise InputError(f"{', '.join(alone)}: only with --scan FILE")
+    other = {"--csv": csv_file, "--plot": plot, "--contact-map": contact_map, "--conductance": options["conductance"]}
+    if stability and any(other.values()):
+        raise InputError(f"--stability has a table of its own: leave out {', '.join(k for k, v in other.items() if v)}")
     kind = find(model or ("auto" if on_scan else "JK"))
     needed = on_scan or options["conductance"] or kind.label == "auto" or kind.law.takes_materials()
     pair = pair_of(options, needed=needed)
@@ -327,6 +333,7 @@ def reached(law: ContactLaw, pressures: Array) -> Array:
 
 
 MAX_POINTS = 1_000_000
+OF_SCAN = ("counter", "xy_unit", "z_unit", "size", "spacing")  # options that say how a scan is read
 
 
 def parameter_values(law: ContactLaw) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from faying.cli.options import NamedPath
 from faying.output.terminal import WIDTH, folded
 from faying.surface.estimators.table import METHODS
 from faying.text import finite, json_text
@@ -12,7 +13,7 @@ from faying.units import lengths, show
 
 
 @click.command()
-@click.argument("file", type=click.Path())
+@click.argument("file", type=NamedPath())
 @click.option("--xy-unit", help='Unit of x and y where the file states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights where the file states none, for example "um".')
 @click.option("--method", type=click.Choice([*METHODS, "all"]), default="psd", show_default=True, help="Estimator.")
@@ -25,7 +26,7 @@ from faying.units import lengths, show
 @click.option("--self-test", "test", is_flag=True, help="Correct for bias by synthetic surfaces made like this one.")
 @click.option("--cross-check", "check", is_flag=True, help="Compare with what other installed readers make of FILE.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
-@click.option("--plot", type=click.Path(dir_okay=False), help="Write a figure (png, pdf, svg).")
+@click.option("--plot", type=NamedPath(dir_okay=False), help="Write a figure (png, pdf, svg).")
 def command(
     file: str,
     xy_unit: str | None,

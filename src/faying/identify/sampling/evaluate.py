@@ -16,6 +16,7 @@ from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
 from faying.measured.pairing import pair_over_loads
+from faying.numerics.follow import follow
 from faying.progress import Report, silent
 from faying.reduction.reduced import ReducedModel, Variant
 from faying.study.keys.test import TestChoice
@@ -109,9 +110,10 @@ class Evaluator:
         lossless = not any(law.predicts_loss for law in laws)
         nothing = np.full((ensemble.loads, model.count), np.nan)
         loss = nothing if lossless else loss
+        order = self._followed(found, model.matrices[2])
         return {
-            "frequencies": frequencies,
-            "loss_factors": loss,
+            "frequencies": np.take_along_axis(frequencies, order, axis=1),
+            "loss_factors": np.take_along_axis(loss, order, axis=1),
             "named": by_name(frequencies, names),
             "named_loss": by_name(loss, names),
             "modes": self._modes(model, found, names),
@@ -119,6 +121,12 @@ class Evaluator:
             "open_share": np.array([share for share, _ in shares]),
             "above_range_share": np.array([share for _, share in shares]),
         }
+
+    def _followed(self, found: Sequence[Variant], mass: Array) -> Index:
+        """Which mode (load, m) of a sample has the shape of each mode of the median, or the next one left."""
+        before = self.median or found
+        pairs = zip(before, found, strict=True)
+        return np.stack([follow(one.shapes, other.shapes, mass, one.frequencies) for one, other in pairs])
 
     def _modes(self, model: ReducedModel, found: Sequence[Variant], names: Index) -> Array:
         """Names (t,) of the modes that this sample pairs with the test's, -1 where one has no partner."""
