@@ -42,7 +42,8 @@ def level_basis(
         structure: without springs per node on its joints.
         preload: its equilibrium under the bolts.
         found: its modes at rest, at least `count` elastic ones to full accuracy.
-        laws: of the joints, one set after another that the basis is made for.
+        laws: of the joints, one set after another that the basis is made for, the least friction first. It slips most:
+            the next set is for modes that have no answer at the greatest level under it.
         levels: accelerations [m/s2], of which each mode takes the greatest at which it has an answer.
         count: how many elastic modes.
 
@@ -52,13 +53,16 @@ def level_basis(
     stiffness, mass = structure.dynamic_matrices
     basis = Span(mass, stiffness, found.modes.shapes[:, : structure.rigid_count + count])
     at_rest = Shifted(stiffness=found.stiffness, mass=mass, shift=found.modes.shift)
+    left = list(range(count))
     for own in laws:
-        wanted = list(range(count))
-        for _ in range(ROUNDS):
+        wanted = left
+        for number in range(ROUNDS):
             model = level_model(structure, preload, basis, own)
-            found_cycles = {k: _greatest(model, levels, k) for k in wanted}
+            every = {k: _greatest(model, levels, k) for k in wanted}
+            if number == 0:
+                left = [k for k, one in every.items() if one is None or one[0] < max(levels)]
             # the basis has the modes at rest
-            cycles = {k: cycle for k, cycle in found_cycles.items() if cycle is not None and not cycle.at_rest}
+            cycles = {k: one[1] for k, one in every.items() if one is not None and not one[1].at_rest}
             if not cycles:
                 break
             forces = np.concatenate([_left(structure, model, cycle) for cycle in cycles.values()], axis=1)
@@ -73,10 +77,10 @@ def level_basis(
     return basis
 
 
-def _greatest(model: LevelModel, levels: Sequence[float], number: int) -> LevelCycle | None:
-    """The cycle of a mode at the greatest level at which it has an answer."""
-    cycles = (model.cycle(level, number) for level in sorted(levels, reverse=True))
-    return next((cycle for cycle in cycles if np.isfinite(cycle.frequency)), None)
+def _greatest(model: LevelModel, levels: Sequence[float], number: int) -> tuple[float, LevelCycle] | None:
+    """The greatest level at which a mode has an answer, and its cycle there."""
+    cycles = ((level, model.cycle(level, number)) for level in sorted(levels, reverse=True))
+    return next((one for one in cycles if np.isfinite(one[1].frequency)), None)
 
 
 def _left(structure: Structure, model: LevelModel, cycle: LevelCycle) -> Array:
