@@ -23,7 +23,10 @@ ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted(
     p.relative_to(ROOT) for p in (ROOT / "examples").rglob("*.toml") if p.stem not in ("uncertain", "laws-evidence")
 )
-OFF = pytest.mark.xfail(reason="an end of the preload differs by 4.8e-4, where each basis states 2e-4")
+OFF = {
+    "hammer-test": pytest.mark.xfail(reason="an end of the preload differs by 4.8e-4, where each basis states 2e-4"),
+    "solid-bolt": pytest.mark.xfail(reason="modes 5 and 6 mix by half at an end: the last digits say which is which"),
+}
 by_parts = pytest.mark.skipif("pardiso" not in available(), reason="only PARDISO factorises part by part")
 
 
@@ -67,7 +70,9 @@ def test_threads_decide_nothing(study, plenty, tmp_path):
 # how an engine came to its answer, and shapes of twins, which may turn
 OWN = {"imbalance", "newton_steps", "factor_memory", "loss_error", "rigid", "provenance", "solver", "bolt_numbers"}
 SHAPES = {"shapes": 1e-4, "shapes_imaginary": 1e-2, "mac": 1e-4}
-TOLERANCES = {"loss_factors": 1e-6, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
+# an estimate, from the strains of a shape that is right to 1e-4
+ESTIMATES = {"mesh_error": 5e-3}
+TOLERANCES = ESTIMATES | {"loss_factors": 1e-6, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
 FREQUENCY, DAMPING = 1e-8, 1e-2
 IN_A_BASIS = 2 * changed.TOLERANCE  # intervals and draws of waves, each in a small basis of its own
 NO_SLIP = 1e-7  # damping ratio of modes that do not slip
@@ -89,7 +94,7 @@ def agree(one, other):
         elif field.name.startswith("level_") and field.name != "level_frequencies":
             assert a == pytest.approx(b, rel=DAMPING, abs=NO_SLIP, nan_ok=True), field.name
         else:
-            rel = SHAPES.get(field.name) or TOLERANCES.get(field.name, FREQUENCY)
+            rel = SHAPES.get(field.name) or TOLERANCES.get(field.name.removeprefix("alternative_"), FREQUENCY)
             least = rel if field.name in SHAPES else 1e-7
             assert a == pytest.approx(b, rel=rel, abs=least * float(np.nanmax(np.abs(b), initial=1e-3)), nan_ok=True), (
                 field.name
@@ -119,9 +124,7 @@ def test_a_joint_that_slips_has_one_answer(study):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "example", [pytest.param(p, marks=[OFF] * (p.parts[1] == "hammer-test"), id=str(p)) for p in EXAMPLES]
-)
+@pytest.mark.parametrize("example", [pytest.param(p, marks=OFF.get(p.parts[1], ()), id=str(p)) for p in EXAMPLES])
 def test_every_example_has_one_answer(example, tmp_path):
     study = Study.read(copied(ROOT / example, tmp_path / "examples"))
     study = replace(study, modes=replace(study.modes, levels=()))  # half of the time; those of two blocks are above

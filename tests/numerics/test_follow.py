@@ -60,3 +60,12 @@ def test_a_mode_that_left_the_range_takes_the_place_that_is_left():
 def test_ranges_that_are_apart_cannot_cross():
     assert not may_cross(np.array([1.0, 2.0, 4.0]), np.array([1.5, 2.5, 5.0]))
     assert may_cross(np.array([1.0, 2.0, 4.0]), np.array([2.1, 2.5, 5.0]))
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.7, 1.5])
+def test_twins_stay_in_the_order_of_their_frequencies(turned):
+    """The directions in their plane are arbitrary; the third mode falls below both."""
+    c, s = np.cos(turned), np.sin(turned)
+    before = np.eye(4)[:, :3]
+    after = np.array([[0, c, -s], [0, s, c], [1, 0, 0], [0, 0, 0]], dtype=float)
+    assert follow(before, after, np.eye(4), np.array([100.0, 100.01, 105.0])).tolist() == [1, 2, 0]

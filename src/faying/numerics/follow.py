@@ -48,7 +48,7 @@ def follow(before: Any, after: Any, mass: Any, frequencies: Array) -> Index:
 
     Returns:
         Of a mode whose shape none has any more, as where it left the range that was looked at: the next one left, in
-        the order of frequencies.
+        the order of frequencies. Twins are in the order of their frequencies.
     """
     moved = product(mass, after)
     sizes = np.sqrt(np.outer(_squares(before, product(mass, before)), _squares(after, moved)))
@@ -57,7 +57,8 @@ def follow(before: Any, after: Any, mass: Any, frequencies: Array) -> Index:
     alike = (group[:, None] == group).astype(float) @ alike
     out = partners(alike, LIKE)
     out[out < 0] = np.setdiff1d(np.arange(alike.shape[1]), out)[: np.count_nonzero(out < 0)]
-    return out
+    # twins keep their order: any directions in their plane serve, so that shapes do not tell which is which
+    return np.concatenate([np.sort(out[group == k]) for k in range(group[-1] + 1)])
 
 
 def _squares(shapes: Any, momenta: Any) -> Array:
