@@ -2,7 +2,7 @@
 
     python benchmarks/run.py [--repeats 3]
 
-Its own law and JK, each alone: with [[alternative]] the two share a factorisation and the mesh. The scan's contact is
+Its own law and JK, each alone: with [[alternative]] the two share the mesh. The scan's contact is
 solved before and its STEP file meshed, as in any run but the first (`faying run` keeps both); Python has compiled its
 modules; on one thread. Medians of CPU seconds. With --fresh also those with the mesh made anew, and those of first
 runs, which solve the contact of the scan, too."""

@@ -47,13 +47,14 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
     """
     if not changes:
         return []
+    ends = sorted({0, len(states) - 1})
     last, structure = states[-1], case.structure
     reduction = Reduction.about(
         structure,
         factor=last.modes.factorisation,
         reference=(last.modes.factorised + last.modes.shift * structure.dynamic_matrices[1]).tocsr(),
         state=last.preload.displacement,
-        shapes=np.concatenate([one.modes.shapes[:, case.rigid_count :] for one in states[::-1]], axis=1),
+        shapes=np.concatenate([states[k].modes.shapes[:, case.rigid_count :] for k in ends], axis=1),
         count=case.study.modes.count,
     )
     friction = [joint.friction for joint in structure.joints]
@@ -62,7 +63,6 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
         [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
         for one in changes
     ]
-    ends = sorted({0, len(forces) - 1})
     states_at_ends = reduction.train_together([loads[k] for loads in every for k in ends], TOLERANCE)
     starts = [state.displacement for state in states_at_ends]
     plain = ChangedCase.nothing(case)

@@ -14,7 +14,7 @@ MAX_NAME = 255  # bytes of the name of a file, on the file systems in use
 
 
 class NamedPath(click.Path):
-    """A path with a name that a file can have: a fault before any work, not behind it."""
+    """A path whose names a file can have; others are faults before any work."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the path."""

@@ -11,6 +11,7 @@ from faying.style import Summary
 from faying.typing import Array
 
 OF_PARTS = ("mesh", "structure", "mode")  # sources that no stiffness of a joint bounds
+MAX_ROWS = 10  # of a summary
 MIN_SQUARE = 1e-300  # where nothing moves a frequency
 
 
@@ -67,6 +68,9 @@ class Interval(Summary):
         """Return 5 %, the best estimate and 95 % of each mode at the greatest preload."""
         ends = zip(self.low[-1], self.best[-1], self.high[-1], strict=True)
         rows = {f"mode {k}": " .. ".join(f"{one:.4g}" for one in three) for k, three in enumerate(ends, 1)}
+        more = len(rows) - MAX_ROWS
+        if more > 0:
+            rows = dict(list(rows.items())[:MAX_ROWS]) | {"": f"{more} more modes"}
         return "5 % .. best estimate .. 95 % [Hz] at the greatest preload", rows
 
     @property
