@@ -12,8 +12,9 @@ from typing import Any
 from faying.typing import Index
 
 MAX_NAMES = 6
-# dots of one name of a table, forty in a row: a study nests four deep, and the parser's memory grows with their square
-DEEP = re.compile(r"(?:\.[^.,=\[\]\n]{1,80}){40}")
+# a dotted name of forty keys: a study nests four deep, and the parser's memory grows with their square
+KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
+DEEP = re.compile(rf"(?:^\s*\[{{0,2}}|[{{,])[ \t]*+(?:{KEY}[ \t]*+\.[ \t]*+){{40}}", re.MULTILINE)
 
 
 def toml(text: str) -> dict[str, Any]:

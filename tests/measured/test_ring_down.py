@@ -217,6 +217,7 @@ def test_a_table_of_another_form_is_refused(tmp_path, text, message):
         ({"signal": 1.0}, "shape \\(\\)"),
         ({"start": np.nan}, "start = nan s"),
         ({"start": 1e9}, "ends before 1e\\+09 s"),
+        ({"start": 8191.7 / RATE}, "ends before 1.9999"),
         ({"cycles": -1}, "cycles = -1"),
     ],
 )

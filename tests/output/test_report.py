@@ -144,3 +144,19 @@ def test_damping_is_a_sentence_where_slip_adds_less_than_a_tenth_to_what_is_at_r
         some = replace(found, level_slip=slip, level_damping=1e-3 + slip, level_low=3e-4 + slip, level_high=3e-3 + slip)
         assert answer.damping_line(some).startswith("Damping at 1 m/s2: 0.031 .. 0.1 .. 0.3 %") == sentence
         assert any("damping" in head for head in answer.answer(some)[0]) != sentence
+
+
+def test_a_table_of_many_modes_ends_at_a_mode_and_says_how_many_follow():
+    """Wide tables stand in blocks, one below the other: each has the same modes."""
+    from faying.cli.run import text
+
+    f = np.arange(100.0, 140.0) + np.arange(14.0)[:, None]
+    same = {"frequencies": f, "loss_factors": 0.02 + 0 * f, "loss_error": 0 * f, "free": f[0], "bonded": f[-1]}
+    few = small_result(loads=1e3 * np.arange(1, 15), mac=np.stack([np.eye(40)] * 14), **same)
+    lines = text(few, everything=False).splitlines()
+    (more,) = [line for line in lines if line.endswith("more modes with --all")]
+    shown = 40 - int(more.split()[0])
+    blocks = [line for line in lines if line.split()[:1] == [str(shown)]]
+    heads = [line for line in lines if line.startswith("mode ")]
+    assert len(blocks) == len(heads) > 1
+    assert not [line for line in lines if line.split()[:1] == [str(shown + 1)]]

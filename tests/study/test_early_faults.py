@@ -142,6 +142,28 @@ def test_a_text_that_nests_without_end_is_refused_in_little_memory(tmp_path, tex
     tracemalloc.stop()
 
 
-def test_dots_of_numbers_and_names_nest_nothing(tmp_path):
-    numbers = ", ".join(f"{k}.5" for k in range(200))
-    assert toml(f"a = [{numbers}]\n[b.c.d]\nfile = 'one.two.three.x3p'")["b"]["c"]["d"]["file"] == "one.two.three.x3p"
+DOTS = " ".join(f"{k}.5" for k in range(60))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f"a = [{DOTS.replace(' ', ', ')}]",
+        f"# measured [Hz]: {DOTS}",
+        f'a = "{" . " * 60}"  # {" . " * 60}',
+        f'a = """\n{DOTS}\n"""',
+        "a = 'one.two.three.x3p'\n[b.c.d]\ne.f = 1",
+        f'a = "{"A sentence. " * 60}"',
+    ],
+)
+def test_dots_of_numbers_texts_and_comments_nest_nothing(line):
+    assert toml(line) == tomllib.loads(line)
+
+
+@pytest.mark.parametrize("key", ["a", '"="', "'.'", "a" * 81])
+@pytest.mark.parametrize("form", ["{} = 1", "[{}]", "[[{}]]", "x = {{ y = 1, {} = 2 }}"])
+def test_dotted_names_of_every_form_end_at_forty(key, form):
+    text = form.format(".".join(60 * [key]))
+    tomllib.loads(text)  # which is legal
+    with pytest.raises(ValueError, match="nested too deep"):
+        toml(text)

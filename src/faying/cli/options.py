@@ -10,7 +10,7 @@ from faying import units
 from faying.errors import InputError
 from faying.text import json_text
 
-MAX_NAME = 255  # bytes of the name of a file, on the file systems in use
+MAX_NAME = 240  # bytes of the name of a file: file systems hold 255, and what is being written has a longer name
 
 
 class NamedPath(click.Path):

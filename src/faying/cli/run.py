@@ -13,7 +13,8 @@ from faying.errors import InputError
 from faying.files import together
 from faying.notes import FIRST_NOTES
 
-MAX_LINES, MAX_ROWS = 36, 19  # of the answer on one screen of 40 lines, and of its table; the files take the rest
+MAX_LINES, MAX_ROWS = 36, 18  # of the answer on one screen of 40 lines, and of its table; the files take the rest
+MIN_MODES = 3  # that the table has, however wide it is
 
 
 @click.command()
@@ -91,10 +92,14 @@ def text(result: Any, *, everything: bool = True) -> str:
     from faying.output.sections import sections
     from faying.output.terminal import wrapped
 
-    first, *others = ([*wrapped(one.above), *table.text(one.rows).splitlines(), ""] for one in sections(result))
-    hidden = 0 if everything else len(first) - 1 - MAX_ROWS  # a blank line is the last
-    if hidden > 0:
-        first[-1 - hidden :] = [f"{hidden} more modes with --all", ""]
+    answer, *others = sections(result)
+    modes = len(answer.rows)
+    rows = table.text(answer.rows).splitlines()
+    while not everything and len(rows) > MAX_ROWS and modes > MIN_MODES + 1:
+        modes -= 1
+        rows = table.text(answer.rows[:modes]).splitlines()
+    hidden = len(answer.rows) - modes
+    first = [*wrapped(answer.above), *rows, *[f"{hidden} more modes with --all"] * (hidden > 0), ""]
     head = (
         f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB), "
         f"{result.damping} loss in the joints"
@@ -109,7 +114,7 @@ def text(result: Any, *, everything: bool = True) -> str:
         lines += item
     rest = len(grave(result.notes)) - len(before)
     lines += [f"  {rest} more at the end"] if everything and rest > 0 else []
-    more = [line for one in others for line in one]
+    more = [line for one in others for line in (*wrapped(one.above), *table.text(one.rows).splitlines(), "")]
     for kind, some in by_severity(result.notes, before).items():
         more += ["", TITLES[kind], *(line for note in some for line in _item(note.text))]
     more += [] if result.hammer is None else [line for note in result.hammer.notes for line in _item(note)]

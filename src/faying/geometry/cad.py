@@ -80,9 +80,13 @@ def write_step(path: Path, solids: Sequence[Any]) -> None:
     The kernel would put the time into it, and how many files it has written.
     """
     kernel().Compound(list(solids)).WriteStep(str(path))
-    text = path.read_text(encoding="latin-1")
+    path.write_text(without_time(path.read_text(encoding="latin-1")), encoding="latin-1")
+
+
+def without_time(text: str) -> str:
+    """The text of a STEP file of the kernel without the time and the number of files written before."""
     text = re.sub(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'", "'2000-01-01T00:00:00'", text, count=1)
-    path.write_text(re.sub(r"(STEP translator \S+) \d+", r"\1 1", text), encoding="latin-1")
+    return re.sub(r"(STEP translator \S+) \d+", r"\1 1", text)
 
 
 def _geometry(path: Path) -> Any:

@@ -186,7 +186,7 @@ def ring_down(
         raise InputError(f"quantity {quantity!r}: use one of {', '.join(MOTIONS)}")
     number(sampling_rate, "sampling_rate", "1/s", least=0)
     start = number(start, "start", "s", least=0, ends="[)")
-    if x.ndim != 1 or not len(x) > start * sampling_rate or not np.all(np.isfinite(x)):
+    if x.ndim != 1 or not round(start * sampling_rate) < len(x) or not np.all(np.isfinite(x)):
         raise InputError(
             f"the record has the shape {x.shape}, has NaN or ends before {start:g} s; give one row of finite samples"
         )

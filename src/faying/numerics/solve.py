@@ -251,7 +251,7 @@ def conjugate_gradients(
         shares = np.linalg.lstsq(like.T @ image, like.T @ right, rcond=1e-12)[0]
         found, rest = like @ shares, right - image @ shares
     target = accuracy * np.linalg.norm(right, axis=0)
-    open_ = np.flatnonzero(np.linalg.norm(rest, axis=0) > target)  # the right-hand sides to go on with
+    open_ = np.flatnonzero(~(np.linalg.norm(rest, axis=0) <= target))  # to go on with; NaN never ends
     rest, step, slope = rest[:, open_], np.zeros((len(rest), len(open_))), np.ones(len(open_))
     for done in range(limit):
         if not len(open_):
@@ -265,9 +265,9 @@ def conjugate_gradients(
         length = np.where(bend > 0, fall / np.where(bend > 0, bend, 1.0), 0.0)
         found[:, open_] += step * length
         rest -= force * length
-        goes_on = np.linalg.norm(rest, axis=0) > target[open_]
-        if done == 0:
-            goes_on &= fall > least
+        goes_on = ~(np.linalg.norm(rest, axis=0) <= target[open_])
+        if done == 0 and least > 0:
+            goes_on &= ~(fall <= least)
         if not np.all(goes_on):
             open_, slope, rest, step = open_[goes_on], slope[goes_on], rest[:, goes_on], step[:, goes_on]
     raise NotConverged(f"conjugate gradients: the residual stays above {accuracy:.0e} after {limit} steps")
