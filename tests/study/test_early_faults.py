@@ -12,7 +12,7 @@ from faying.answer.run import run
 from faying.case import case
 from faying.case.case import build
 from faying.cli import main
-from faying.errors import ReadError
+from faying.errors import InputError, ReadError
 from faying.geometry.selectors import Selector
 from faying.study import Study
 from faying.sweeps.axes import axis_of
@@ -167,3 +167,11 @@ def test_dotted_names_of_every_form_end_at_forty(key, form):
     tomllib.loads(text)  # which is legal
     with pytest.raises(ValueError, match="nested too deep"):
         toml(text)
+
+
+def test_a_path_to_change_that_nests_without_end_is_refused_in_little_memory(study):
+    tracemalloc.start()
+    with pytest.raises(InputError, match="keys with dots"):
+        study().with_("a." * 30_000 + "b", 1)
+    assert tracemalloc.get_traced_memory()[1] < 1e8
+    tracemalloc.stop()

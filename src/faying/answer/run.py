@@ -80,13 +80,14 @@ def run(
     mesh = mesh_error(case, states) if study.modes.intervals else None
     band, interval, more = intervals(case, states, mesh)
     more += mesh_notes(case, mesh) if study.modes.intervals else []
-    bolts, bolt_notes = _bolts(case, states)
+    shapes = shapes_of(case, states)
+    bolts, bolt_notes = _bolts(case, states, shapes)
     states = [released(state) for state in states]
     alternatives = [solve_alternative(case, choice, engine, progress) for choice in study.alternatives]
     progress.begin("modes free and bonded")
     free, bonded, notes = bounds(case)
     notes = [*notes, *findings(case, states), *more, *bolt_notes]
-    result = replace(collect(case, states, (free, bonded), notes, alternatives), bolt_numbers=bolts)
+    result = replace(collect(case, states, shapes, (free, bonded), notes, alternatives), bolt_numbers=bolts)
     if band is not None:
         result = replace(result, **band.fields(case.loads))
     if interval is not None:
@@ -132,6 +133,7 @@ def stages(study: Study) -> list[str]:
 def collect(
     case: Case,
     states: Sequence[LoadedCase],
+    shapes: Sequence[Array],
     bounds: tuple[Array, Array],
     notes: Sequence[Note],
     alternatives: Sequence[Alternative] = (),
@@ -140,12 +142,12 @@ def collect(
 
     Args:
         case, states: the case and its state under each load.
+        shapes: of the modes (m, nodes, 3) under each load.
         bounds: frequencies [Hz] with the faces apart and with them bonded.
         notes: what is to be said beyond the notes of case and states.
         alternatives: the same under other laws.
     """
     study, structure = case.study, case.structure
-    shapes = shapes_of(case, states)
     steps, with_first = macs(case, states)
     comparison, more = compared(case, states, shapes, steps)
     if comparison is not None and alternatives:
@@ -198,9 +200,9 @@ def collect(
     return replace(result, hammer=case.hammer.compared(result, full))
 
 
-def _bolts(case: Case, states: Sequence[LoadedCase]) -> tuple[BoltNumbers | None, list[Note]]:
+def _bolts(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:
     try:
-        return bolt_numbers(case, states, shapes_of(case, states)), []
+        return bolt_numbers(case, states, shapes), []
     except NotConverged as fault:
         return None, [Note(code="bolt-numbers", text=f"no compliance and load factor of the bolts: {fault}")]
 

@@ -4,7 +4,6 @@ The text is the truth: a form is made from it, and a change in the form is a cha
 """
 
 import re
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
@@ -17,6 +16,7 @@ from faying.study.declaration.declared import NAME, NUMERAL, REQUIRED, Declared,
 from faying.study.keys.tables import STUDY
 from faying.study.keys.uncertain import DISTRIBUTIONS, OWN
 from faying.study.keys.varied import MODEL, rooms, short_keys, varied
+from faying.text import toml
 
 Shape = Literal["text", "choice", "truth", "number", "face", "list", "some", "any"]
 # tables that stand in the form before the text has them, and the keys of a table that are shown at once
@@ -379,7 +379,7 @@ def _read(text: str, shape: Shape, key: Key) -> Any:
     """What is written in a field as a value; what does not fit stays text, and the reader of the study refuses it."""
     if shape in ("face", "list", "some", "any", "number") and text[0] in "[{":
         try:
-            return tomllib.loads(f"a = {text}")["a"]
+            return toml(f"a = {text}")["a"]
         except ValueError:
             raise InputError(
                 f"{text} is not a list or table as TOML writes it, such as {key.kind or '[1, 2]'}"

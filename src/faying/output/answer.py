@@ -32,8 +32,8 @@ def answer(result: Result) -> Rows:
     heads += [] if damped is None else [f"damping, {damped.levels[middle]:g} m/s2 [%]"]
     rows: Rows = [heads]
     slopes = 1e3 * preload_slope(result.frequencies, result.loads) if several else np.zeros(len(result.bonded))
-    for j in range(len(result.bonded)):
-        low, best, high = (float(one[-1, j]) for one in (interval.low, interval.best, interval.high))
+    ends = np.stack([interval.low[-1], interval.best[-1], interval.high[-1]], axis=1)
+    for j, (low, best, high) in enumerate(ends.tolist()):
         cells = [str(j + 1), moves(result, j), f"{best:.{_digits(low, high)}f}", _interval(low, high)]
         cells.append(f"{result.frequencies[-1, j]:.2f}")
         cells += [f"{slopes[j]:+.0f}" if abs(slopes[j]) >= 100 else f"{slopes[j]:+.2g}"] * several

@@ -1,6 +1,5 @@
 """A study with one thing changed: the path of a key, and what stands there instead."""
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from difflib import get_close_matches
@@ -10,6 +9,7 @@ from faying.errors import InputError
 from faying.misuse import shortened
 from faying.study.declaration.declared import NAME, Declared, Inner, Key
 from faying.study.keys.tables import STUDY
+from faying.text import toml
 
 
 def with_value(data: Mapping[str, Any], path: str, value: Any) -> dict[str, Any]:
@@ -35,8 +35,8 @@ def _parts(path: str) -> list[str]:
     if "\n" in path:
         raise wrong
     try:
-        table: Any = tomllib.loads(f"{path} = 0")
-    except tomllib.TOMLDecodeError:
+        table: Any = toml(f"{path} = 0")
+    except ValueError:
         raise wrong from None
     parts = []
     while isinstance(table, dict):
