@@ -57,7 +57,9 @@ def mesh_error(case: Case, states: Sequence[LoadedCase]) -> MeshError | None:
         count, frequencies = len(state.damped.frequencies), state.damped.frequencies
         shapes = state.modes.shapes[:, case.rigid_count :][:, :count]
         speeds = 2 * np.pi * state.modes.frequencies[case.rigid_count :][:count]
-        parts.append(surplus.error(shapes, speeds**2) / 2)
+        pairs = zip(structure.joints, state.springs, strict=True)
+        joints = [(joint.interface, one.k_n, one.k_t) for joint, one in pairs if not joint.per_node]
+        parts.append(surplus.error(shapes, speeds**2, joints) / 2)
         halves = (state.ends or {}).get("contact")
         mean = np.zeros(count) if halves is None else np.log(np.stack(halves) / frequencies).mean(axis=0)
         contact.append(OF_HALVES * np.abs(mean))
@@ -65,9 +67,9 @@ def mesh_error(case: Case, states: Sequence[LoadedCase]) -> MeshError | None:
 
 
 def loaded_nodes(structure: Structure) -> Mask:
-    """Nodes (n,) on which joints, bolts, dowels, supports and masses act."""
+    """Nodes (n,) on which bolts, dowels, supports and masses act, and joints node by node."""
     mesh = structure.mesh
-    faces = [face for joint in structure.joints for face in joint.faces]
+    faces = [face for joint in structure.joints if joint.per_node for face in joint.faces]
     faces += [face for bolt in structure.bolts for face in bolt.faces]
     faces += [wall for dowel in structure.dowels for wall in dowel.walls]
     faces += [support.face for support in structure.supports]

@@ -3,17 +3,19 @@
 The functions are cubic on each edge and each face of quadratic tetrahedra, quadratic on each edge of linear ones. What
 a mode leaves of its equations, tested with them, is solved for them alone. The energy of this correction, over that of
 the mode, is the relative error of the square of its frequency: it falls by so much where the functions are added.
-Functions on faces where joints, bolts, supports or masses act are left out, as their forces are not of the parts.
+Functions on the faces of a joint feel its springs. Those on faces where bolts, supports or masses act are left out, as
+the forces there are not of the parts.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from faying.fe.elasticity import Solid, add_rows, distinct, pair_keys, pairs_of, stiffness_of, with_transpose
-from faying.fe.elements import SOLIDS, Element
+from faying.fe.elements import FACES, SOLIDS, Element
+from faying.fe.interface import Interface
 from faying.fe.solids import SolidMesh
 from faying.numerics.product import product
 from faying.typing import Array, Index, Mask
@@ -31,6 +33,8 @@ class Surplus:
     Args:
         mesh, materials: of the parts; E [Pa], nu and density [kg/m3] count.
         functions, signs: of each element (e, s): numbers, and 1 or -1 by the direction of its edge.
+        keys: of the functions on edges and of those on faces, in the order of their numbers: what `_keys` makes of the
+            corners.
         stiffness: of the functions in three directions [N/m] (3 f, 3 f), on elements with straight edges, so that it is
             positive definite where an element is nearly folded, too.
         left_out: unknowns that are 0 (3 f,).
@@ -44,6 +48,7 @@ class Surplus:
     materials: Mapping[str, Solid]
     functions: Index
     signs: Array
+    keys: Sequence[Index]
     stiffness: Any
     left_out: Mask
 
@@ -54,32 +59,75 @@ class Surplus:
         Args:
             mesh: the parts.
             materials: of each part.
-            loaded: nodes (n,) on which something else than the parts acts.
+            loaded: nodes (n,) on which something else than the parts and the joints acts.
         """
         kinds = {cells.shape[1] for cells in mesh.blocks}
         element = SOLIDS[kinds.pop()]
         if kinds or element.shape.name != "tet":
             return None
-        functions, signs, left_out = _numbered(np.concatenate(mesh.blocks), element, loaded)
+        functions, signs, keys, left_out = _numbered(np.concatenate(mesh.blocks), element, loaded)
         return cls(
             mesh=mesh,
             materials=materials,
             functions=functions,
             signs=signs,
+            keys=keys,
             stiffness=_assembled(mesh, materials, functions, signs, len(left_out)),
             left_out=np.repeat(left_out, 3),
         )
 
-    def error(self, shapes: Array, squares: Array) -> Array:
+    def motion(self, interface: Interface) -> Any:
+        """Operator (3q, 3f) from the functions to opening and slips [m per m] at the points where two faces meet."""
+        from scipy.sparse import csr_array
+
+        q, count = len(interface.weights), len(self.left_out) // 3
+        total = csr_array((3 * q, 3 * count))
+        for nodes, values, sign in (
+            (interface.first_nodes, interface.first_values, -1.0),
+            (interface.second_nodes, interface.second_values, 1.0),
+        ):
+            functions, at = self._on_face(nodes, values)
+            entries = sign * at[:, None, :, None] * interface.frames[:, :, None, :]  # q, axis, function, component
+            columns = np.broadcast_to((3 * functions)[:, None, :, None] + np.arange(3), entries.shape)
+            pointer = np.arange(3 * q + 1) * (3 * functions.shape[1])
+            total = total + csr_array((entries.ravel(), columns.ravel(), pointer), shape=total.shape)
+        return total
+
+    def _on_face(self, nodes: Index, shapes: Array) -> tuple[Index, Array]:
+        """Numbers and values (q, s) of functions of element faces, at points where nodes have these shapes (q, a)."""
+        face = FACES[nodes.shape[1]]
+        corners = nodes[:, : face.corners]
+        places = shapes @ face.nodes
+        share = np.column_stack([1 - places.sum(axis=1), places])  # of each corner: barycentric
+        edges = corners[:, [[0, 1], [1, 2], [2, 0]]]
+        here, there = share, np.roll(share, -1, axis=1)
+        values, keys = here * there, [_keys(edges, len(self.mesh.points))]
+        if face.order == 2:
+            ordered = np.where(edges[..., 0] < edges[..., 1], 1.0, -1.0)
+            values = np.column_stack([values * (here - there) * ordered, share.prod(axis=1)])
+            keys.append(_keys(corners[:, None], len(self.mesh.points)))
+        first = np.cumsum([0, *map(len, self.keys)])
+        numbers = [
+            start + np.searchsorted(known, key) for start, known, key in zip(first, self.keys, keys, strict=False)
+        ]
+        return np.concatenate(numbers, axis=1), values
+
+    def error(self, shapes: Array, squares: Array, joints: Sequence[tuple[Interface, Array, Array]] = ()) -> Array:
         """Relative error of the square of each circular frequency [-] (m,), 0 or more: a finer mesh has it lower.
 
         Args:
             shapes: modes of unit mass (unknowns, m) [kg^-1/2].
             squares: of their circular frequencies (m,) [1/s2], above 0.
+            joints: where two faces meet, and the springs k_n, k_t [Pa/m] (q,) there.
         """
-        residual = self._residual(shapes, squares)
+        residual, springs = self._residual(shapes, squares), []
+        for interface, k_n, k_t in joints:
+            motion = self.motion(interface)
+            share = (interface.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1)).reshape(-1, 1)
+            residual -= motion.T @ (share * (interface.relative @ shapes))
+            springs.append((motion, share))
         residual[self.left_out] = 0.0
-        return _energy(self.stiffness, residual, self.left_out) / squares
+        return self._energy(springs, residual) / squares
 
     def _residual(self, shapes: Array, squares: Array) -> Array:
         """What modes leave of the equations, tested with the functions (3 f, m)."""
@@ -98,6 +146,28 @@ class Surplus:
             force += np.einsum("esa,eaim->esim", momentum, u * squares, optimize=True)
             add_rows(out, self.functions[here].ravel(), force.reshape(-1, 3 * m))
         return out.reshape(-1, m)
+
+    def _energy(self, springs: Sequence[tuple[Any, Array]], force: Array) -> Array:
+        """f K^-1 f of each column (m,), by conjugate gradients from below; functions that are left out stay 0.
+
+        K: the stiffness of the parts and of the joints, each by its motion (3q, 3f) and its springs [N/m] (3q, 1).
+        """
+        diagonal = self.stiffness.diagonal()[:, None] + sum(motion.power(2).T @ share for motion, share in springs)
+        rest, solved = force.copy(), np.zeros(force.shape[1])
+        along = rest / diagonal
+        size = np.einsum("im,im->m", rest, along)
+        for _ in range(STEPS):
+            pushed = product(self.stiffness, along)
+            for motion, share in springs:
+                pushed += motion.T @ (share * (motion @ along))
+            pushed[self.left_out] = 0.0
+            step = size / np.maximum(np.einsum("im,im->m", along, pushed), TINY)
+            solved += step * size  # each step adds so much to f x, as its direction is conjugate to those before
+            rest -= step * pushed
+            scaled = rest / diagonal
+            size, before = np.einsum("im,im->m", rest, scaled), size
+            along = scaled + along * (size / np.maximum(before, TINY))
+        return solved
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,24 +200,6 @@ class _AtPoints:
         )
 
 
-def _energy(stiffness: Any, force: Array, left_out: Mask) -> Array:
-    """f K^-1 f of each column (m,), by conjugate gradients from below; unknowns that are left out stay 0."""
-    diagonal = stiffness.diagonal()[:, None]
-    rest, solved = force.copy(), np.zeros(force.shape[1])
-    along = rest / diagonal
-    size = np.einsum("im,im->m", rest, along)
-    for _ in range(STEPS):
-        pushed = product(stiffness, along)
-        pushed[left_out] = 0.0
-        step = size / np.maximum(np.einsum("im,im->m", along, pushed), TINY)
-        solved += step * size  # each step adds so much to f x, as its direction is conjugate to those before
-        rest -= step * pushed
-        scaled = rest / diagonal
-        size, before = np.einsum("im,im->m", rest, scaled), size
-        along = scaled + along * (size / np.maximum(before, TINY))
-    return solved
-
-
 def _chunks(mesh: SolidMesh) -> Iterator[tuple[str, Index, slice]]:
     """Part, elements and their place among all of them, a few at a time."""
     first = 0
@@ -159,27 +211,36 @@ def _chunks(mesh: SolidMesh) -> Iterator[tuple[str, Index, slice]]:
                 first += len(some)
 
 
-def _numbered(cells: Index, element: Element, loaded: Mask) -> tuple[Index, Array, Mask]:
-    """Functions of each element (e, s), their signs (e, s), and which functions (f,) are left out."""
-    n = int(cells.max()) + 1
+def _keys(corners: Index, n: int) -> Index:
+    """One number for each set of two or three corners (..., c), whatever their order; n: of nodes."""
+    ordered = np.sort(corners, axis=-1).astype(np.int64)
+    out = ordered[..., 0]
+    for k in range(1, ordered.shape[-1]):
+        out = out * n + ordered[..., k]
+    return out
+
+
+def _numbered(cells: Index, element: Element, loaded: Mask) -> tuple[Index, Array, list[Index], Mask]:
+    """Functions of each element (e, s), their signs (e, s), the keys of all, and which functions (f,) are left out."""
     edges = np.stack([cells[:, list(pair)] for pair in element.edges], axis=1)
-    keys, flags = [edges.min(axis=2) * n + edges.max(axis=2)], [loaded[edges].all(axis=2)]
+    keys, flags = [_keys(edges, len(loaded))], [loaded[edges].all(axis=2)]
     signs = np.ones(edges.shape[:2])
     if element.order == 2:
         signs = np.where(edges[..., 0] < edges[..., 1], 1.0, -1.0)
-        sides = np.sort(np.stack([cells[:, list(side)] for side in element.shape.sides], axis=1), axis=2)
-        keys.append((sides[..., 0] * n + sides[..., 1]) * n + sides[..., 2])
+        sides = np.stack([cells[:, list(side)] for side in element.shape.sides], axis=1)
+        keys.append(_keys(sides, len(loaded)))
         flags.append(loaded[sides].all(axis=2))
         signs = np.concatenate([signs, np.ones(sides.shape[:2])], axis=1)
-    functions, first = [], 0
+    known, functions, first = [], [], 0
     for key in keys:
-        _, number = np.unique(key, return_inverse=True)
+        some, number = np.unique(key, return_inverse=True)
         functions.append(number.reshape(key.shape) + first)
-        first += int(number.max()) + 1
+        known.append(some)
+        first += len(some)
     every = np.concatenate(functions, axis=1)
     left_out = np.zeros(first, dtype=bool)
     left_out[every[np.concatenate(flags, axis=1)]] = True
-    return every, signs, left_out
+    return every, signs, known, left_out
 
 
 def _higher(element: Element, places: Array) -> tuple[Array, Array]:
