@@ -12,6 +12,7 @@ have in the mean over the loads. "From all modes" lets them scatter over the bou
 means leave them open. "From the other modes" predicts each mode with dimensions that only the four others narrow.
 """
 
+import csv
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -32,6 +33,7 @@ from faying.study import Study
 from faying.style import COLOURS, COLUMN, drawing, legend_above, new_figure, save
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
+AT_REST = EXAMPLES.parent / "docs" / "theory" / "damping-at-rest.csv"
 NOMINAL = np.array([0.5, 0.8, 0.9, 0.95])
 TEST = 2e-3  # standard deviation of ln f of the hammer test, which is rounded to 5 Hz
 TRAINED, DRAWN = 256, 2**18  # dimensions of the plane model, and of the polynomial through it
@@ -70,11 +72,6 @@ PLOTS = {
     ),
 }
 SMALL = 0.1  # m/s2, at rest
-# damping ratio of bolted structures at small motions, whose geometry the project does not have
-AT_REST = {
-    "Orion beam, 10, 20, 30 and 80 cNm": (2.99e-3, 2.51e-3, 1.72e-3, 1.47e-3),
-    "beam of the kind of Brake and Reuss by ring-down": (1.3e-3, 1.0e-3),
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -288,10 +285,10 @@ def main() -> None:
         damping += found[1]
         every, others = (joined(one, found[0]) for one in (every, others))
         rows += [every, others]
-    for name, ratios in AT_REST.items():
-        low, high = REST[0], REST[2]
-        words = f"of {100 * low:g} .. {100 * high:g} % at rest"
-        damping += [(f"{name}: {100 * one:g} % {words}", low <= one <= high) for one in ratios]
+    low, high = 100 * REST[0], 100 * REST[2]
+    for row in csv.DictReader(AT_REST.open(encoding="utf-8")):
+        ratio = float(row["damping ratio [%]"])
+        damping.append((f"{row['structure']}: {ratio:g} % of {low:g} .. {high:g} % at rest", low <= ratio <= high))
     print("values, number, median width [%], share inside at", NOMINAL)
     for one in rows:
         print(one)

@@ -11,8 +11,10 @@ TITLES: dict[Severity, str] = {
     "limit": "what limits this result",
     "remark": "what was read and assumed",
 }
+INCOMPLETE = "interval-incomplete"  # the code of a note on what an interval lacks
 WRONG = frozenset(
     {
+        INCOMPLETE,
         "open",
         "not-converged",
         "beyond-law-matters",

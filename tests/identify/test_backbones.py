@@ -49,6 +49,7 @@ scan_area = "16 mm^2"
 """
 SCATTER = """
 [uncertain]
+only = true
 friction = "0.1 to 0.6"
 E = "200 GPa +- 4 GPa"
 preload = { tightening = "torque wrench, friction estimated" }
@@ -100,7 +101,7 @@ def test_a_sample_has_the_curve_of_the_study_with_its_numbers(plan, found):
 
 
 def test_a_form_that_scatters_is_that_of_the_study_with_it():
-    study = study_of('[uncertain]\njoint.form.crown_along = "0.1 um to 0.9 um"')
+    study = study_of('[uncertain]\nonly = true\njoint.form.crown_along = "0.1 um to 0.9 um"')
     work = follower(study, [[0.7e-6]])
     joint = replace(study.joints[0], form=Form(crown_along=0.7e-6))
     curve = faying.backbone(replace(study, joints=(joint,), uncertain=None), at=work.choice.at)
@@ -120,7 +121,7 @@ def test_at_rest_a_curve_begins_at_the_frequency_of_the_prediction(found):
 
 def test_all_stiffness_times_a_factor_leaves_the_damping_at_an_acceleration():
     """Forces at the same acceleration are the same, and so are pressures and slip: f goes with the root alone."""
-    study = study_of('[uncertain]\nE = "200 GPa +- 4 GPa"\nstiffness = "0.9 to 1.1"')
+    study = study_of('[uncertain]\nonly = true\nE = "200 GPa +- 4 GPa"\nstiffness = "0.9 to 1.1"')
     rows = follower(study, [[200e9, 1.0], [1.04 * 200e9, 1.04]]).rows([0, 1])
     one, two = rows["frequencies"]
     np.testing.assert_allclose(two, 1.04**0.5 * one, rtol=1e-6)
@@ -129,7 +130,7 @@ def test_all_stiffness_times_a_factor_leaves_the_damping_at_an_acceleration():
 
 def test_friction_scales_small_motions_and_changes_nothing_at_rest():
     """In Mindlin's solution what a small motion loses and softens goes with the motion over the friction."""
-    study = study_of('[uncertain]\nfriction = "0.1 to 0.6"')
+    study = study_of('[uncertain]\nonly = true\nfriction = "0.1 to 0.6"')
     study = replace(study, backbone=replace(study.backbone, amplitude=(120.0, 300.0)))
     friction = np.array([[0.15], [0.3], [0.6]])
     rows = follower(study, friction).rows([0, 1, 2])
@@ -141,7 +142,7 @@ def test_friction_scales_small_motions_and_changes_nothing_at_rest():
 
 
 def test_a_joint_that_slides_ends_its_curve():
-    study = study_of('[uncertain]\nfriction = "0.01 to 0.6"')
+    study = study_of('[uncertain]\nonly = true\nfriction = "0.01 to 0.6"')
     study = replace(study, backbone=replace(study.backbone, amplitude=(100.0, 5e3)))
     rows = pickle.loads(pickle.dumps(follower(study, [[0.1]]))).rows([0])  # as other processes have it
     going = np.isfinite(rows["frequencies"][0])
@@ -269,7 +270,7 @@ def test_what_was_done_before_an_interruption_is_kept(plan, found, tmp_path, mon
         (SCATTER, LAW, True, "give a whole number"),
         (SCATTER, LAW.replace("friction = 0.2", "friction = [0.2, 0.4]"), 8, "one friction and no law"),
         (SCATTER, LAW.replace("[backbone]", SURFACE + '[backbone]\nlaw = "jk"'), 8, "one friction and no law"),
-        ('[uncertain]\nE = "200 GPa +- 4 GPa"', LAW.replace("friction = 0.2", ""), 8, "has no friction"),
+        ('[uncertain]\nonly = true\nE = "200 GPa +- 4 GPa"', LAW.replace("friction = 0.2", ""), 8, "has no friction"),
     ],
 )
 def test_what_cannot_be_is_refused_before_the_mesh(more, law, count, words, monkeypatch):
@@ -281,7 +282,9 @@ def test_what_cannot_be_is_refused_before_the_mesh(more, law, count, words, monk
 
 def test_drawn_friction_goes_before_that_of_the_backbone():
     both = study_of()
-    drawn, other = (Ensemble.of(study_of(more), 8, 0) for more in (SCATTER, '[uncertain]\nE = "200 GPa +- 4 GPa"'))
+    drawn, other = (
+        Ensemble.of(study_of(more), 8, 0) for more in (SCATTER, '[uncertain]\nonly = true\nE = "200 GPa +- 4 GPa"')
+    )
     assert sliding(drawn, both.backbone, 0) == pytest.approx((0.35,))
     assert sliding(other, both.backbone, 0) == (0.2,)
 

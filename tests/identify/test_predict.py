@@ -27,6 +27,7 @@ from tests.helpers.studies import write
 
 SCATTER = """
 [uncertain]
+only = true
 E = "200 GPa +- 4 GPa"
 preload = {tightening = "torque wrench, friction estimated"}
 stiffness = {distribution = "lognormal", median = 1, sd_ln = 0.6}
@@ -67,7 +68,8 @@ def test_scales_of_the_parts_scale_every_frequency_of_bonded_like_parts(tmp_path
 
 
 def test_the_medians_are_near_the_run_and_the_intervals_hold_it(plan, found):
-    low, middle, high = found.quantiles().frequencies
+    # the samples alone: what is not listed is symmetric, and moves the median of a skewed distribution
+    low, middle, high = replace(found, discrepancy=0.0).quantiles().frequencies
     nominal = run(replace(plan, uncertain=None)).frequencies
     assert middle == pytest.approx(nominal, rel=5e-3)
     assert np.all(low < nominal)
@@ -92,8 +94,8 @@ def test_quantiles_are_those_of_the_samples(found):
 
 
 def test_the_discrepancy_is_in_every_interval(found):
-    """1 % of each mode, normal in ln f; that of the structure is in the samples, as E scatters."""
-    assert found.discrepancy == pytest.approx(0.01)
+    """2.5 % of each mode, normal in ln f, and of the 3 % of the structure what E, which scatters, has not."""
+    assert found.discrepancy == pytest.approx(np.sqrt(0.025**2 + 0.03**2 - 0.015**2))
     alone = replace(found, frequencies=np.full(found.frequencies.shape, 100.0), paired=None, test=None)
     low, middle, high = alone.quantiles().frequencies
     assert middle == pytest.approx(100.0, rel=1e-6)

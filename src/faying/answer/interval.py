@@ -1,6 +1,6 @@
 """From what is not known of a case to the interval of each frequency, one thing at a time."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,11 +13,12 @@ from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
 from faying.case.scatter import ENDS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
 from faying.case.solve import LoadedCase
-from faying.errors import FayingError
-from faying.notes import Note
+from faying.errors import NotConverged
+from faying.notes import INCOMPLETE, Note
 from faying.result.interval import Interval
 from faying.typing import Array
 
+CAUSES = {"middle": "the median of k_t/k_n", "law": "the range of the law"}  # what a change is, where not its name
 NOTED_RATIO = 2.0  # factor between measured stiffness and a law that is noted
 
 
@@ -51,16 +52,23 @@ def intervals(
             ]
         if len(case.loads) == 1:
             changes["preload"] = [replace(plain, factor=factor) for factor in _preload_factors(case)]
-    try:
-        found = iter(frequencies_of(case, states, [one for some in changes.values() for one in some]))
-    except FayingError as fault:
-        text = f"no interval from the law and no draws of waves: {fault}"
-        return None, _combined(case, states, {}, mesh), [Note(code="interval", text=text)]
+    found = iter(frequencies_of(case, states, [one for some in changes.values() for one in some]))
     by_name = {name: [next(found) for _ in some] for name, some in changes.items()}
-    band = draws.band(states, by_name.pop("waves", []))
-    middle = by_name.pop("middle")[0] if "middle" in by_name else None
-    pairs = {name: (one, other) for name, (one, other) in by_name.items()}
-    return band, _combined(case, states, pairs, mesh, middle, band), [*draws.notes(case), *law_notes(case)]
+    notes = [*_incomplete(by_name), *draws.notes(case), *law_notes(case)]
+    solved = {name: [one for one in some if not isinstance(one, NotConverged)] for name, some in by_name.items()}
+    band = draws.band(states, by_name.get("waves", []))
+    pairs = {name: (solved[name][0], solved[name][1]) for name in ("law", "preload") if len(solved.get(name, [])) == 2}
+    middle = solved["middle"][0] if solved.get("middle") else None
+    return band, _combined(case, states, pairs, mesh, middle, band), notes
+
+
+def _incomplete(by_name: Mapping[str, Sequence[Array | NotConverged]]) -> Iterator[Note]:
+    """Say which causes, or how many of their draws, have no answer and are not in the intervals."""
+    for name, some in by_name.items():
+        faults = [one for one in some if isinstance(one, NotConverged)]
+        if faults:
+            what = f"{len(faults)} of {len(some)} draws of waves" if name == "waves" else CAUSES.get(name, name)
+            yield Note(code=INCOMPLETE, text=f"the intervals do not contain {what}, which found no answer: {faults[0]}")
 
 
 def law_factors(case: Case) -> list[tuple[float, float, float] | None]:

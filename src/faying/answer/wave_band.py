@@ -9,6 +9,7 @@ import numpy as np
 from faying.bolt.solid_bolt import SolidBolt
 from faying.case.case import Case
 from faying.case.solve import LoadedCase
+from faying.errors import NotConverged
 from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
 from faying.form.machining import ASSUMED, ASSUMED_GAP
@@ -19,6 +20,7 @@ from faying.typing import Array
 from faying.units import show
 
 DRAWS = 4
+MIN_DRAWS = 2  # that have a scatter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,19 +102,26 @@ class Draws:
             for joint, waves in zip(joints, self.wavy, strict=True)
         ]
 
-    def band(self, states: Sequence[LoadedCase], found: Sequence[Array]) -> WaveBand | None:
-        """The frequencies of all draws, from those of `drawn` [Hz] (loads, m); None where nothing is drawn."""
+    def band(self, states: Sequence[LoadedCase], found: Sequence[Array | NotConverged]) -> WaveBand | None:
+        """The frequencies of all draws that have an answer, from those of `drawn` [Hz] (loads, m).
+
+        None where nothing is drawn, or fewer than two draws have an answer.
+        """
         if not any(self.wavy):
             return None
         solved = np.stack([state.damped.frequencies for state in states])
-        by_seed = dict(zip(self.drawn, found, strict=True))
+        by_seed = dict.fromkeys(self.seeds, solved) | dict(zip(self.drawn, found, strict=True))
+        rows = {seed: row for seed, row in by_seed.items() if not isinstance(row, NotConverged)}
+        if len(rows) < MIN_DRAWS:
+            return None
         ends = [
             (np.nan, np.nan) if w is None else (max(w.laid.waves.shortest, w.laid.carried), w.laid.waves.longest)
             for w in self.wavy
         ]
         rms = [np.nan if w is None else w.laid.waves.Wq for w in self.wavy]
-        rows = np.stack([by_seed.get(seed, solved) for seed in self.seeds])
-        return WaveBand(seeds=self.seeds, frequencies=rows, rms=np.array(rms), ends=np.array(ends))
+        return WaveBand(
+            seeds=tuple(rows), frequencies=np.stack(list(rows.values())), rms=np.array(rms), ends=np.array(ends)
+        )
 
     def notes(self, case: Case) -> list[Note]:
         """What is assumed of the faces that the study says nothing of."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from faying.case.case import Case
 from faying.case.solve import LoadedCase
+from faying.errors import NotConverged
 from faying.joint.joint_law import JointLaw
 from faying.numerics.follow import follow
 from faying.reduction.reduce import Gapped, Reduction
@@ -38,12 +39,13 @@ def can_change(case: Case) -> bool:
     return not (ordered or viscous or any(joint.per_node for joint in case.structure.joints))
 
 
-def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[ChangedCase]) -> list[Array]:
-    """Frequencies [Hz] (loads, m) of each change; the basis is made for the first and the last load of all of them.
+def frequencies_of(
+    case: Case, states: Sequence[LoadedCase], changes: Sequence[ChangedCase]
+) -> list[Array | NotConverged]:
+    """Frequencies [Hz] (loads, m) of each change, or why it has none.
 
-    They are in the order of the modes of the states, each that of the mode whose shape it has.
-
-    Raises NotConverged where a change has no equilibrium.
+    The basis is made for the first and the last load of all of them. Frequencies are in the order of the modes of the
+    states, each that of the mode whose shape it has.
     """
     if not changes:
         return []
@@ -63,12 +65,12 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
         [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
         for one in changes
     ]
-    states_at_ends = reduction.train_together([loads[k] for loads in every for k in ends], TOLERANCE)
-    starts = [state.displacement for state in states_at_ends]
+    starts = _trained(reduction, [[loads[k] for k in ends] for loads in every])
+    solved = [start for start in starts if not isinstance(start, NotConverged)]
     plain = ChangedCase.nothing(case)
     at_rest = cache(
         lambda k: reduction.evaluate_at(
-            Gapped(laws=plain.laws, forces=forces[k], friction=friction, gaps=plain.gaps), starts[0]
+            Gapped(laws=plain.laws, forces=forces[k], friction=friction, gaps=plain.gaps), solved[0]
         )
     )
 
@@ -77,7 +79,24 @@ def frequencies_of(case: Case, states: Sequence[LoadedCase], changes: Sequence[C
         at = at_rest(k)
         return np.asarray(one.frequencies[follow(at.shapes, one.shapes, reduction.model.dynamic_mass, at.frequencies)])
 
-    return [
-        np.stack([followed(reduction.evaluate_at(one, starts[len(ends) * number]), k) for k, one in enumerate(loads)])
-        for number, loads in enumerate(every)
-    ]
+    def at_loads(loads: Sequence[Gapped], start: Array | NotConverged) -> Array | NotConverged:
+        if isinstance(start, NotConverged):
+            return start
+        try:
+            return np.stack([followed(reduction.evaluate_at(one, start), k) for k, one in enumerate(loads)])
+        except NotConverged as fault:
+            return fault
+
+    return [at_loads(loads, start) for loads, start in zip(every, starts, strict=True)]
+
+
+def _trained(reduction: Reduction, every: Sequence[Sequence[Gapped]]) -> list[Array | NotConverged]:
+    """Train a basis on some variants of each change; coefficients of the first one's equilibrium, or why it has none.
+
+    Where they cannot be trained together, each change is trained alone, so that one without an answer loses none else.
+    """
+    try:
+        found = reduction.train_together([one for variants in every for one in variants], TOLERANCE)
+    except NotConverged as fault:
+        return [fault] if len(every) == 1 else [_trained(reduction, [variants])[0] for variants in every]
+    return [state.displacement for state in found[:: len(every[0])]]

@@ -1,8 +1,8 @@
 """What scatters in a bolted structure where the study says nothing of it: how far, and where that is known from."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from math import hypot
+from dataclasses import dataclass, replace
+from math import hypot, sqrt
 from typing import final
 
 import numpy as np
@@ -13,6 +13,7 @@ from faying.distribution import Distribution
 from faying.form.machining import ASSUMED
 from faying.study.keys.bolt_sheet import BoltSheetChoice
 from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice
+from faying.study.keys.varied import number_of
 from faying.study.study import Study
 
 LEVELS = np.array([0.05, 0.5, 0.95])
@@ -21,6 +22,8 @@ DEFAULT_WAY = "torque wrench, friction estimated"  # of tightening, where nothin
 TWO_SIGMA = 0.02275  # probability below two standard deviations
 SCORE = 1.6449  # standard deviations from the median to these ends
 OF_PARTS = ("E", "density")
+# of ln f by E: half of the coefficient of variation 0.03 of steel, JCSS Probabilistic Model Code, part 3.2
+YOUNG = 0.015
 MESH_NOTED = 5e-3  # estimated error of a frequency by the mesh that is noted
 
 
@@ -81,15 +84,14 @@ SCATTER = {
         left=0.35,
     ),
     "structure": Scatter(
-        distribution=Distribution(kind="normal", centre=1.0, spread=0.015),
-        source="Young's modulus of steel, coefficient of variation 0.03 (JCSS Probabilistic Model Code, part 3.2), of "
-        "which a frequency has half; common to all modes",
+        distribution=Distribution(kind="normal", centre=1.0, spread=0.03),
+        source="tests over nominal models of four structures (docs/theory/model-versus-test.csv); common to all modes",
         remedy="weigh and ring each part alone",
         left=0.2,
     ),
     "mode": Scatter(
-        distribution=Distribution(kind="normal", centre=1.0, spread=0.01),
-        source="convention: dimensions, supports and what the model leaves out, each mode by itself",
+        distribution=Distribution(kind="normal", centre=1.0, spread=0.025),
+        source="the same pairs, what is left of each mode: dimensions, supports and what the model leaves out",
     ),
 }
 
@@ -106,15 +108,28 @@ def stated(choice: UncertainChoice | None) -> Mapping[str, Distribution]:
     return {} if choice is None else {one.key: one.distribution for one in choice.inputs}
 
 
-def structure_sd(choice: UncertainChoice | None) -> float:
-    """Standard deviation of ln f that all modes share [-]: half of that of E and density where [uncertain] has them."""
+def _parts_sd(choice: UncertainChoice | None) -> float | None:
+    """Standard deviation of ln f by E and density, half of theirs [-]; None where [uncertain] lists neither."""
     spread: dict[str, float] = {}
     for key, one in stated(choice).items():
         kind = key.rsplit(".", 1)[-1]
         if key.startswith("material.") and kind in OF_PARTS:
             low, high = one.quantile(ENDS)
             spread[kind] = max(spread.get(kind, 0.0), float(np.log(high / low)) / (2 * SCORE))
-    return hypot(*spread.values()) / 2 if spread else default("structure").spread
+    return hypot(*spread.values()) / 2 if spread else None
+
+
+def unlisted_sd(choice: UncertainChoice | None) -> float:
+    """Standard deviation of ln f that all modes share [-], but for E and density where [uncertain] lists them."""
+    if choice is not None and choice.structure is not None:
+        return float(choice.structure.median)
+    common = default("structure").spread
+    return common if _parts_sd(choice) is None else sqrt(common**2 - YOUNG**2)
+
+
+def structure_sd(choice: UncertainChoice | None) -> float:
+    """Standard deviation of ln f that all modes share [-]."""
+    return hypot(unlisted_sd(choice), _parts_sd(choice) or 0.0)
 
 
 def mode_sd(choice: UncertainChoice | None) -> float:
@@ -124,9 +139,26 @@ def mode_sd(choice: UncertainChoice | None) -> float:
 
 
 def discrepancy(choice: UncertainChoice) -> float:
-    """Standard deviation of ln f [-] that samples of a prediction lack: of a mode, and of parts that are certain."""
-    sampled = any(key.startswith("material.") and key.endswith(OF_PARTS) for key in stated(choice))
-    return hypot(mode_sd(choice), 0.0 if sampled else default("structure").spread)
+    """Standard deviation of ln f [-] that samples of a prediction lack."""
+    return hypot(mode_sd(choice), unlisted_sd(choice))
+
+
+def with_assumed(study: Study) -> UncertainChoice:
+    """What scatters in a study: what [uncertain] lists, and what is assumed of the rest unless that is left out."""
+    given = study.uncertain or UncertainChoice()
+    if given.only:
+        return given
+    listed = [number_of(one.key) for one in given.inputs]
+    more: list[Input] = []
+    for one in assumed(study).inputs:
+        number = number_of(one.key)
+        owners = {other.owner for other in listed if (other.room, other.name) == (number.room, number.name)}
+        if number.owner is None and owners and None not in owners:  # listed for some joints: the others have their own
+            rest = [joint.name for joint in study.joints if joint.name not in owners]
+            more += [replace(one, key=f"{number.room}.{name}.{number.name}") for name in rest]
+        elif not owners & {None, number.owner} and not (given.models and number.name == "stiffness"):
+            more.append(one)
+    return replace(given, inputs=(*given.inputs, *more))
 
 
 def assumed(study: Study) -> UncertainChoice:

@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.case.case import mates_notes
 from faying.case.provenance import provenance
-from faying.case.scatter import assumed, discrepancy
+from faying.case.scatter import discrepancy, with_assumed
 from faying.errors import InputError
 from faying.identify.identity import paired, paired_modes
 from faying.identify.prediction import Prediction
@@ -44,7 +44,7 @@ def predict(
     report: Report | None = None,
     backbones: int = 0,
 ) -> Prediction:
-    """Evaluate a study under the scatter of its numbers, as its [uncertain] says.
+    """Evaluate a study under the scatter of its numbers: as its [uncertain] says, and as is assumed of the rest.
 
     The parts are reduced once to small bases; every sample is evaluated in these, at each load of the study.
 
@@ -70,8 +70,7 @@ def predict(
         Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
     """
     study = Study.read(study)
-    if study.uncertain is None:
-        study = replace(study, uncertain=assumed(study))
+    study = replace(study, uncertain=with_assumed(study))
     check(study, samples, seed)
     choice = choice_of(study, samples, backbones) if backbones else None
     ensemble = Ensemble.of(study, samples, seed)
@@ -167,8 +166,8 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
             out.append(Note(code="test-modes", text=text))
     if study.uncertain is not None and not study.uncertain.models:
         text = (
-            f"the intervals include what [uncertain] lists, and {found.discrepancy:.2%} of each frequency for what it "
-            "does not (discrepancy, and E of the parts where that does not scatter); not the error of the mesh"
+            f"the intervals include what is listed above, and {found.discrepancy:.2%} of each frequency for what else "
+            "the parts are (uncertain.structure, discrepancy); not the error of the mesh"
         )
         out.append(Note(code="interval", text=text))
     return out

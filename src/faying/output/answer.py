@@ -3,6 +3,7 @@
 import numpy as np
 
 from faying.case.scatter import SCATTER
+from faying.notes import INCOMPLETE
 from faying.output.table import Rows, by_mode, damping_at
 from faying.result import Result
 from faying.result.interval import Interval
@@ -27,6 +28,8 @@ def answer(result: Result) -> Rows:
         return []
     several, damped = len(result.loads) > 1, None if damping_line(result) else result.at_levels
     heads = ["mode", "moves most", f"{load_text(result.loads[-1])} [Hz]", "5 to 95 %", "as modelled"]
+    if any(note.code == INCOMPLETE for note in result.notes):
+        heads[3] += ", incomplete"
     heads += ["Hz/kN"] * several
     middle = 0 if damped is None else _middle(damped)
     heads += [] if damped is None else [f"damping, {damped.levels[middle]:g} m/s2 [%]"]

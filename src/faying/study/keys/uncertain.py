@@ -17,9 +17,9 @@ from faying.study.declaration.values import quantity
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.varied import MODEL, Varied, number_of, rooms, short_keys, varied, words
 
-OF_TEST = ("test", "discrepancy", "test_loss", "discrepancy_loss")
+OF_TEST = ("test", "discrepancy", "structure", "test_loss", "discrepancy_loss")
 DISTRIBUTIONS = {"distribution", "tightening", "scatter"}  # keys of a table that is one value
-OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", MODEL)  # that are not plain distributions
+OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", MODEL, "only")  # that are not plain distributions
 # standard deviations of the shapes of a joint over the flatness tolerance of its faces: the second-degree part of the
 # random form of `faying.form.form`, whose mean flatness over one face is two thirds of the tolerance
 DRAWS = 1_000_000  # of waves, of which each sample has one
@@ -53,8 +53,10 @@ class UncertainChoice:
         inputs: The numbers.
         models: Laws and their weights, which sum to 1; empty where the law is certain.
         fit: Whether D and G scatter as the fit of the scan says; scans: others of the same surface.
+        only: Whether nothing else scatters in a prediction; else the rest does as it is assumed.
         test, discrepancy: Standard deviation of a test frequency over its value, and of the model's own error in a mode
             [-]; None for the defaults of an identification.
+        structure: Standard deviation of ln f that all modes share, beyond E and density where these are listed [-].
         test_loss, discrepancy_loss: The same of loss factors.
     """
 
@@ -62,8 +64,10 @@ class UncertainChoice:
     models: tuple[tuple[str, float], ...] = ()
     fit: bool = False
     scans: tuple[Path, ...] = ()
+    only: bool = False
     test: Distribution | None = None
     discrepancy: Distribution | None = None
+    structure: Distribution | None = None
     test_loss: Distribution | None = None
     discrepancy_loss: Distribution | None = None
 
@@ -185,10 +189,10 @@ class _Reader:
             self._preload(value, where)
         elif key in OF_TEST:
             self.rest[key] = _share(value, where)
-        elif key == "surface.fit":
+        elif key in ("surface.fit", "only"):
             if not isinstance(value, bool):
                 raise InputError(f"{where} = {value!r} should be true or false")
-            self.rest["fit"] = value
+            self.rest[key.rsplit(".", 1)[-1]] = value
         elif key == "surface.scans":
             self.rest |= {"fit": True, "scans": self._files(value, where)}
         elif key == "law.model":

@@ -1,0 +1,77 @@
+"""A draw, or a cause, that finds no answer is named and loses nothing else."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import faying
+from faying.errors import NotConverged
+from faying.joint.modal import ModesChoice
+from faying.notes import INCOMPLETE
+from faying.output.answer import answer
+from faying.reduction.reduce import Reduction
+from faying.study import Study
+from tests.helpers.studies import write
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """The blocks of `faying init` on a coarse mesh."""
+    path = tmp_path_factory.mktemp("blocks") / "study.toml"
+    write(path, flat=False)
+    found = Study.read(path)
+    sizes = {name: 2 * size for name, size in found.geometry.face_size.items()}
+    geometry = replace(found.geometry, size=2 * found.geometry.size, face_size=sizes)
+    return replace(found, geometry=geometry, alternatives=(), modes=ModesChoice(count=5, levels=()))
+
+
+@pytest.fixture(scope="module")
+def complete(study):
+    return faying.run(study)
+
+
+def without(monkeypatch, is_lost):
+    """Let no variant that `is_lost` find its equilibrium."""
+    train = Reduction.train_together
+
+    def trained(self, variants, tolerance):
+        if any(is_lost(one) for one in variants):
+            raise NotConverged("no equilibrium after 60 steps")
+        return train(self, variants, tolerance)
+
+    monkeypatch.setattr(Reduction, "train_together", trained)
+
+
+def test_one_draw_that_has_no_answer_loses_one_draw(study, complete, monkeypatch):
+    lost: list[np.ndarray] = []
+
+    def third_of_the_gaps(variant):
+        gap = variant.gaps[0]
+        if not any(np.array_equal(gap, other) for other in lost) and np.ptp(gap) > 0 and len(lost) < 3:
+            lost.append(gap)
+        return len(lost) == 3 and np.array_equal(gap, lost[2])
+
+    without(monkeypatch, third_of_the_gaps)
+    found = faying.run(study)
+    assert found.interval_sources == complete.interval_sources
+    assert len(found.wave_seeds) == len(complete.wave_seeds) - 1
+    left = [list(complete.wave_seeds).index(seed) for seed in found.wave_seeds]
+    # within what the small bases miss
+    assert found.wave_frequencies == pytest.approx(complete.wave_frequencies[left], rel=5e-4)
+    (note,) = [note for note in found.notes if note.code == INCOMPLETE]
+    assert "1 of 4 draws of waves, which found no answer: no equilibrium" in note.text
+    assert note.severity == "wrong"
+    assert answer(found)[0][3] == "5 to 95 %, incomplete"
+    assert answer(complete)[0][3] == "5 to 95 %"
+
+
+def test_a_law_that_has_no_answer_leaves_the_waves(study, complete, monkeypatch):
+    def stiff(variant):
+        return variant.laws[0].scale > 1.0
+
+    without(monkeypatch, stiff)
+    found = faying.run(study)
+    assert set(complete.interval_sources) - set(found.interval_sources) == {"law"}
+    assert found.wave_frequencies == pytest.approx(complete.wave_frequencies, rel=5e-4)
+    assert any("do not contain the range of the law" in note.text for note in found.notes)

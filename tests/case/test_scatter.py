@@ -1,0 +1,108 @@
+"""What scatters by default: beside published models and tests, and what a study says in its place."""
+
+import csv
+from collections import defaultdict
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from faying.case.level_damping import REST
+from faying.case.scatter import SCORE, default, discrepancy, mode_sd, structure_sd, with_assumed
+from faying.study import Study
+
+ROOT = Path(__file__).parents[2]
+THEORY = ROOT / "docs" / "theory"
+BLOCKS = ROOT / "examples" / "two-blocks"
+
+
+@pytest.fixture(scope="module")
+def logs() -> dict[str, np.ndarray]:
+    """ln measured over nominal model, by structure, of those whose joint makes no difference."""
+    found = defaultdict(list)
+    with (THEORY / "model-versus-test.csv").open(encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["counts"] == "yes":
+                found[row["structure"]].append(float(row["measured [Hz]"]) / float(row["nominal model [Hz]"]))
+    return {name: np.log(values) for name, values in found.items()}
+
+
+def of_two_kinds(logs) -> tuple[float, float]:
+    """Root mean square of the means of structures, about none, and of the modes about them."""
+    means = np.array([one.mean() for one in logs])
+    return float(np.sqrt(np.mean(means**2))), float(np.sqrt(np.mean([one.var(ddof=1) for one in logs])))
+
+
+def test_the_priors_of_structure_and_mode_are_those_of_published_pairs(logs):
+    common, each = of_two_kinds(list(logs.values()))
+    # four structures: a chi-square of four degrees holds 90 % from 0.65 to 2.4 times the root
+    assert 0.65 * common < default("structure").spread < 2.4 * common
+    # nineteen degrees of their modes: 0.79 to 1.37 times
+    assert 0.79 * each < default("mode").spread < 1.37 * each
+
+
+def test_intervals_of_90_percent_hold_them_also_with_the_source_left_out(logs):
+    every = np.concatenate(list(logs.values()))
+    end = SCORE * np.hypot(default("structure").spread, default("mode").spread)
+    assert np.mean(np.abs(every) < end) > 0.8
+    inside = []
+    for name, values in logs.items():
+        others = of_two_kinds([other for key, other in logs.items() if key != name])
+        inside += list(np.abs(values) < SCORE * np.hypot(*others))
+    assert np.mean(inside) > 0.8
+
+
+def test_damping_at_rest_of_measured_structures_is_within_its_prior():
+    with (THEORY / "damping-at-rest.csv").open(encoding="utf-8") as file:
+        ratios = np.array([float(row["damping ratio [%]"]) / 100 for row in csv.DictReader(file)])
+    assert np.mean((ratios > REST[0]) & (ratios < REST[2])) > 0.9
+    assert np.median(ratios) == pytest.approx(REST[1], rel=0.3)
+    assert REST[1] ** 2 == pytest.approx(REST[0] * REST[2], rel=0.1)  # a lognormal
+
+
+def listed(lines: str, tmp_path, study: str = "study.toml") -> Study:
+    """The two blocks with lines of [uncertain]."""
+    text = (BLOCKS / study).read_text(encoding="utf-8").replace('"model.inp"', f'"{(BLOCKS / "model.inp").as_posix()}"')
+    path = tmp_path / "study.toml"
+    path.write_text(f"{text}\n[uncertain]\n{lines}\n", encoding="utf-8")
+    return Study.read(path)
+
+
+def keys(study: Study) -> set[str]:
+    return {one.key for one in with_assumed(study).inputs}
+
+
+def test_what_is_listed_takes_the_place_of_that_alone(tmp_path):
+    plain = Study.read(BLOCKS / "study.toml")
+    every = keys(plain)
+    named = listed('E = "200 GPa +- 2 GPa"', tmp_path)
+    assert keys(named) == every | {"material.steel.E"} or keys(named) - every == {
+        one.key for one in named.uncertain.inputs
+    }
+    assert structure_sd(plain.uncertain) == default("structure").spread
+    # E within 1 % is half a per cent of a frequency, and the dimensions stay unknown
+    assert structure_sd(named.uncertain) == pytest.approx(np.sqrt(0.03**2 - 0.015**2 + 0.005**2), rel=1e-3)
+    assert discrepancy(named.uncertain) == pytest.approx(np.sqrt(0.03**2 - 0.015**2 + mode_sd(None) ** 2), rel=1e-3)
+
+
+def test_only_leaves_out_what_is_assumed(tmp_path):
+    study = listed('only = true\nE = "200 GPa +- 2 GPa"', tmp_path)
+    assert [one.key for one in with_assumed(study).inputs] == [one.key for one in study.uncertain.inputs]
+
+
+def test_the_structure_can_be_known_better(tmp_path):
+    study = listed('structure = "0.5 %"', tmp_path)
+    assert structure_sd(study.uncertain) == pytest.approx(0.005)
+    assert discrepancy(study.uncertain) == pytest.approx(np.hypot(0.005, mode_sd(None)))
+
+
+def test_a_joint_that_is_listed_leaves_the_others_as_assumed(tmp_path):
+    study = listed("", tmp_path)
+    joint = study.joints[0]
+    two = replace(study, joints=(joint, replace(joint, name="other", number=2)), uncertain=None)
+    common = {one.key for one in with_assumed(two).inputs}
+    assert "joint.stiffness" in common
+    one = listed(f'joint."{joint.name}".stiffness = "0.5 to 2"', tmp_path).uncertain
+    found = {one.key for one in with_assumed(replace(two, uncertain=one)).inputs}
+    assert found == common - {"joint.stiffness"} | {f"joint.{joint.name}.stiffness", "joint.other.stiffness"}
