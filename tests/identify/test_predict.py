@@ -80,7 +80,11 @@ def test_shares_of_stiff_modes_are_those_of_the_parts(found):
     """A mode of the parts alone goes with the root of E and of 1/density: 2 % and .5 %, so 16 to 1 in variance."""
     shares, error = found.shares()
     assert np.all(error < 0.3)
-    total = dict(zip(found.names, shares.total.T, strict=True))
+    total = dict(zip(found.blamed, shares.total.T, strict=True))
+    low, high = np.log(found.quantiles((0.05, 0.95)).frequencies[:, -1])
+    # the discrepancy is normal: its share is the square of its width over that of the interval, where that is normal
+    expected = (2 * 1.6449 * found.discrepancy / (high - low)) ** 2
+    assert total["discrepancy"] == pytest.approx(expected, rel=0.15)
     quiet = int(np.argmin(total["joint.stiffness"]))
     assert total["material.45 steel.E"][quiet] == pytest.approx(16 * total["material.45 steel.density"][quiet], rel=0.4)
 

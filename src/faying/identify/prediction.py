@@ -229,9 +229,10 @@ class Prediction(Recorded):
         return int(inside.sum()), int(np.isfinite(self.test).sum())
 
     def shares(self) -> tuple[Shares, Array]:
-        """Shares of the variance of the frequencies at the last load that each input has.
+        """Shares of the variance of the frequencies at the last load that each of `blamed` has.
 
-        They are those of a polynomial through the samples, in the scores of the inputs; one for each law.
+        Those of inputs are of a polynomial through the samples, in the scores of the inputs; one for each law. What it
+        does not explain has a share, the draws of waves among it, and so has the discrepancy.
 
         Returns:
             The shares of each mode: of the test's modes, or of all where there is no test; and the polynomial's
@@ -242,11 +243,23 @@ class Prediction(Recorded):
         """
         return self._shares
 
+    @property
+    def columns(self) -> list[int]:
+        """Columns of the inputs that a polynomial can follow: all but the seeds of waves, which name a draw."""
+        return [k for k, name in enumerate(self.names) if not name.endswith("_seed")]
+
+    @property
+    def blamed(self) -> tuple[str, ...]:
+        """What has a share of the variance: inputs, what no polynomial of them explains, and the discrepancy."""
+        drawn = len(self.columns) < len(self.names)
+        rest = ("draws of waves, and what is not explained" if drawn else "not explained", "discrepancy")
+        return (*(self.names[k] for k in self.columns), *rest)
+
     @cached_property
     def _shares(self) -> tuple[Shares, Array]:
         seen = self.observed[0][:, -1]
-        inputs = self.inputs
-        numeric = len(inputs.columns) - bool(inputs.models)
+        inputs, columns = self.inputs, self.columns
+        numeric = len(columns) - bool(inputs.models)
         needed = 2 * (numeric + 1)
         answers = np.isfinite(seen[self.sound]).sum(axis=0)
         modes = np.flatnonzero(answers >= needed)
@@ -255,7 +268,7 @@ class Prediction(Recorded):
                 f"at most {answers.max(initial=0)} samples have an answer; shares of {numeric} inputs need {needed}"
             )
         laws = self._laws(self.values)
-        scores = self._scores(self.values)
+        scores = self._scores(self.values)[:, columns]
         fits, squared = {}, np.zeros(len(modes))
         for law in np.unique(laws[self.sound]):
             here = self.sound & (laws == law)
@@ -264,16 +277,22 @@ class Prediction(Recorded):
 
         def function(values: Array) -> Array:
             out = np.empty((len(values), len(modes)))
-            which, at = self._laws(values), self._scores(values)[:, :numeric]
+            scored = [inputs.priors[k].score(x) for k, x in zip(columns[:numeric], values.T, strict=False)]
+            which, at = self._laws(values), np.stack(scored, axis=1)
             for law in np.unique(which):
                 # a law without any answer has no part in the variance of the answers
                 out[which == law] = fits.get(law, next(iter(fits.values()))).predict(at[which == law])
             return out
 
-        spread = np.nanstd(seen[self.sound][:, modes], axis=0)
+        variance = np.nanvar(seen[self.sound][:, modes], axis=0)
+        missed = squared / self.answered / np.where(variance > 0, variance, np.inf)
+        beyond = (self.discrepancy * np.nanmean(seen[self.sound][:, modes], axis=0)) ** 2
         error = np.full(seen.shape[1], np.nan)
-        error[modes] = np.sqrt(squared / self.answered) / np.where(spread > 0, spread, np.inf)
-        found = shares(function, inputs.priors, count=POINTS)
+        error[modes] = np.sqrt(missed)
+        found = shares(function, [inputs.priors[k] for k in columns], count=POINTS)
+        sampled = variance / np.where(variance + beyond > 0, variance + beyond, 1.0)
+        unexplained = np.minimum(missed, 1.0) * sampled
+        found = found.beside(sampled - unexplained, np.stack([unexplained, 1 - sampled], axis=-1))
         return _at_modes(found, modes, seen.shape[1]), error
 
     def _scores(self, values: Array) -> Array:
@@ -322,7 +341,7 @@ class Prediction(Recorded):
         except InputError as fault:
             return out | {"shares": {"none": str(fault)}}
         out["shares"] = {
-            "inputs": list(self.names),
+            "inputs": list(self.blamed),
             "first": numbers(found_shares.first),
             "total": numbers(found_shares.total),
             "surrogate_error": numbers(error),
@@ -432,7 +451,7 @@ def tornado(found: Prediction) -> Any:
     shares, _ = found.shares()
     modes = len(shares.first)
     order = np.argsort(np.nanmean(shares.total, axis=0))[::-1]
-    fig = new_figure(WIDE, 1.3 + 0.22 * modes + 0.08 * len(found.names))
+    fig = new_figure(WIDE, 1.3 + 0.22 * modes + 0.08 * len(found.blamed))
     ax = fig.subplots()
     left = np.zeros(modes)
     for rank, k in enumerate(order):
@@ -444,7 +463,7 @@ def tornado(found: Prediction) -> Any:
             height=0.7,
             color=COLOURS[rank % len(COLOURS)],
             hatch="//" if rank >= len(COLOURS) else None,
-            label=name_of(found.names[k]),
+            label=name_of(found.blamed[k]),
         )
         left += width
     rest = np.clip(1 - left, 0, None)
@@ -473,7 +492,7 @@ def scatter_matrix(found: Prediction) -> Any:
     values, _ = found.observed
     frequencies = values[:, -1]
     modes = np.arange(min(3, frequencies.shape[1]))
-    order = np.argsort(np.nanmean(shares.total[modes], axis=0))[::-1][:MAX_INPUTS]
+    order = np.array(found.columns)[np.argsort(np.nanmean(shares.total[modes][:, :-2], axis=0))[::-1][:MAX_INPUTS]]
     fig = new_figure(WIDE, 1.25 * len(modes) + 0.8)
     axes = fig.subplots(len(modes), len(order), sharex="col", sharey="row", squeeze=False)
     for row, mode in enumerate(modes):

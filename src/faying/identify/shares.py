@@ -33,6 +33,16 @@ class Shares:
     first_interval: Array
     total_interval: Array
 
+    def beside(self, part: Array, others: Array) -> "Shares":
+        """The same of a greater variance, of which this is a part (m,), and others (m, k) act by themselves."""
+        both = {name: getattr(self, name) * part[:, None] for name in ("first", "total")}
+        ends = {f"{name}_interval": getattr(self, f"{name}_interval") * part[:, None] for name in both}
+        more = np.broadcast_to(others, (2, *others.shape))
+        return Shares(
+            **{name: np.concatenate([one, others], axis=-1) for name, one in both.items()},
+            **{name: np.concatenate([one, more], axis=-1) for name, one in ends.items()},
+        )
+
 
 def shares(function: Callable[[Array], Array], priors: Sequence[Distribution], *, count: int = 4096) -> Shares:
     """First-order and total shares of variance (Sobol indices).

@@ -13,7 +13,6 @@ from faying.units import in_mm, load_text
 WIDTH = 80  # columns of a terminal
 SHOWN = 0.03  # share of the variance from which an input is named
 MAX_ACCELERATIONS = 12  # accelerations in the table of backbones, but for the last
-POOR = 0.3  # leave-one-out error of the polynomial, over the scatter, from which shares of the variance say little
 
 
 def scatter(found: Prediction) -> Rows:
@@ -92,21 +91,18 @@ def beside_test(found: Prediction) -> Rows:
 def blame(found: Prediction) -> tuple[Rows, str]:
     """One row per mode: which inputs make its variance at the last preload, greatest first; and what to know of it."""
     try:
-        shares, error = found.shares()
+        shares, _ = found.shares()
     except InputError as fault:
         return [], f"No shares of the variance: {fault}."
     name = "mode" if found.paired is None else "test mode"
     rows: Rows = [[name, "total share of the variance"]]
     for mode, row in enumerate(shares.total):
         named = [k for k in np.argsort(-np.nan_to_num(row)) if row[k] >= SHOWN]  # NaN is not
-        words = ", ".join(f"{found.names[k]} {row[k]:.0%}" for k in named)
-        if error[mode] > POOR:
-            words += f" (poor: the polynomial misses {error[mode]:.0%} of the scatter)"
+        words = ", ".join(f"{found.blamed[k]} {row[k]:.0%}" for k in named)
         rows.append([str(mode + 1), words or "-"])
-    worst = float(np.nanmax(error))
     text = (
-        "A total share counts what an input does together with others, too. The shares are those of a polynomial "
-        f"through the samples; its leave-one-out error is at most {worst:.0%} of the scatter."
+        "A total share counts what an input does together with others, too. The shares of inputs are those of a "
+        "polynomial through the samples."
     )
     return rows, text
 
