@@ -271,3 +271,16 @@ def test_range_widens_with_the_doubt_of_the_hardness():
     assert series.doubt[middle] > 0.3 * abs(np.log(k[1] / k[0]))
     assert np.all(series.least_factor(loading=False) < 1)
     assert np.all(series.greatest_factor(loading=False) > 1)
+
+
+def test_a_material_without_the_hardness_of_small_spots_is_said_with_its_key(tmp_path):
+    """The same steel without brinell: softer spots, a stiffer law, and a sentence that names the key."""
+    scan = scan_named("init", tmp_path)
+    typed = replace(STEEL, name="typed", brinell=None, vickers=None)
+    known = HalfSpace(pair=PAIR, scan=scan, lowest=5e6, highest=2e7)
+    plain = HalfSpace(pair=ContactPair(typed, typed), scan=scan, lowest=5e6, highest=2e7)
+    assert float(plain.at_pressure(1e7).k_n) > 1.05 * float(known.at_pressure(1e7).k_n)
+    assert known.assumptions == ()
+    (text,) = plain.assumptions
+    assert "the spots have the hardness of typed" in text
+    assert "give brinell" in text

@@ -42,7 +42,8 @@ material = "45 steel"
 # nu = 0.3
 # density = "7850 kg/m^3"
 # yield_strength = "355 MPa"
-# hardness = "994 MPa"         # 2.8 times the yield strength where left out
+# brinell = "1.67 GPa"         # HB 170: contact solved on a scan needs it for the hardness of small spots
+# hardness = "994 MPa"         # of analytic laws; 2.8 times the yield strength where left out
 # friction = 0.25
 
 # The rough surface: the scan of one face.

@@ -350,11 +350,16 @@ class HalfSpace(ContactLaw):
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """That k_t is one number, where the lay makes two of it."""
-        ratio = float(np.median(self.series.values["lay"]))
-        if ratio < 1 + LAY:
-            return ()
-        return (f"its k_t is the mean of two directions, which differ by {ratio - 1:.0%} (lay of the scan)",)
+        """That k_t is one number, where the lay makes two of it; that spots of every size have one hardness."""
+        out, ratio = [], float(np.median(self.series.values["lay"]))
+        if ratio >= 1 + LAY:
+            out.append(f"its k_t is the mean of two directions, which differ by {ratio - 1:.0%} (lay of the scan)")
+        if self._hardness is not None and self.pair.vickers is None:
+            out.append(
+                f"the spots have the hardness of {self.pair.softer.name}, {show(self._hardness, 'Pa')}, at any size; "
+                "small spots are harder, so that frequencies may be a tenth too high: give brinell of the material"
+            )
+        return tuple(out)
 
     def resolution_error(self, pressure: float) -> dict[str, float]:
         """Relative change of area, k_n and k_t when the scan is halved in points each way [-].
