@@ -17,6 +17,7 @@ from faying.output import table
 from faying.study import Study
 from tests.helpers import studies
 
+BLOCKS = Path(__file__).parents[2] / "examples" / "two-blocks" / "study.toml"
 PLATES = Path(__file__).parents[2] / "examples" / "plates-and-bolts" / "plates.toml"
 
 
@@ -133,6 +134,37 @@ def test_levels_are_those_of_the_backbone(fine, mode, friction, top):
     # the loss of the law at rest, which the curve leaves out, moves the complex mode by as much at every level
     change = np.diff(found.level_frequencies[0, :, mode - 1])
     assert change == pytest.approx(np.diff(curve.frequency[picked]), abs=5e-4 * curve.frequency[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20))
+def test_any_small_structure_has_damping_as_harmonic_balance_has_or_says_that_it_has_none(seed):
+    """From motions that nothing slips at to those that no friction holds, on two blocks at random."""
+    rng = np.random.default_rng(seed)
+    friction, preload = np.exp(rng.uniform(np.log([0.03, 200.0]), np.log([0.5, 2e4])))
+    read = Study.read(BLOCKS)
+    plan = replace(
+        read,
+        joints=tuple(replace(joint, friction=float(friction)) for joint in read.joints),
+        preloads=(replace(read.preloads[0], forces=(float(preload),)),),
+        modes=replace(read.modes, levels=tuple(np.geomspace(0.01, 1000.0, 6).tolist()), intervals=False),
+    )
+    found = run(plan)
+    none = np.isnan(found.level_damping)
+    assert np.array_equal(none, np.isnan(found.level_frequencies))
+    assert any(note.code == "no-level-answer" for note in found.notes) == bool(none.any())
+    assert np.all(found.level_slip[~none] < 1.0)
+    mode = 1 + int(np.nanargmax(found.level_slip[0, -2]))
+    curve = faying.backbone(plan, mode, float(friction), (1.0, 1000.0), rest_damping=0.0)
+    picked = np.flatnonzero(curve.damping > 1e-6)[::4]
+    levels = tuple(float(curve.acceleration[k]) for k in picked)
+    found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
+    slip, stated = found.level_slip[0, :, mode - 1], found.level_error[0, :, mode - 1]
+    answered = np.isfinite(slip)
+    assert np.count_nonzero(answered) >= len(levels) - 1
+    # 3e-6 of a ratio is below the last printed digit
+    room = (stated * curve.damping[picked] + 3e-6)[answered]
+    assert np.all(np.abs(slip - curve.damping[picked])[answered] < room)
 
 
 @pytest.mark.slow

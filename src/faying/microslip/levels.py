@@ -34,6 +34,8 @@ ERROR_OF_SHAPE = 0.2
 # of the damping, over the motion that a harmonic near a mode would have, were it not left out, over that of the first
 # one: an energy of this size comes and goes (beam whose mode 5 has twice the frequency of mode 3)
 ERROR_OF_NEAR_MODE = 4.0
+# of the damping, over the damping ratio: what slides far lags behind (twenty random blocks up to where all slides)
+ERROR_OF_LAG = 8.0
 MET = 0.1  # of its square: how near the speed of a harmonic may come to that of a mode
 SLIGHT = 1e-5  # relative change of the squared frequency that needs no second pass
 MIN_MOTION = 1e-3  # of the greatest motion of a joint's points: what moves less keeps its stiffness at rest
@@ -43,6 +45,8 @@ SPRINGS = 32  # into which a law is cut at each point
 # softens moves more; fewer stiffnesses are changed at a time until the mode keeps that much
 MIN_LEFT = 0.25
 MIN_SQUARED = 0.01  # of the squared frequency at rest, below which the joints do not hold the mode: it has no answer
+MAX_DAMPING = 1.0  # a mode that is damped by as much does not vibrate: it has no answer
+MAX_OTHER_ENERGY = 10.0  # of the first harmonic, in what corrects it: more of it is no cycle of this mode
 MIN_SHARE = 1 / 64  # of a change of the secant stiffnesses, below which the mode has no answer at a level
 
 
@@ -53,8 +57,8 @@ class AtLevels:
     Args:
         frequencies: [Hz] (l, m).
         damping: ratio of slip [-] (l, m).
-        error: of the damping, over it [-] (l, m): its change in the last pass, what the basis may miss of a shape, and
-            what a mode near twice or three times the frequency may add; at most 1.
+        error: of the damping, over it [-] (l, m): its change in the last pass, what the basis may miss of a shape, what
+            a mode near twice or three times the frequency may add, and the lag; at most 1.
 
     NaN where a mode has no answer at a level: its joints would slide without end.
     """
@@ -140,7 +144,7 @@ class LevelModel:
             near = self._follow(motion, forces.force, speed, damping, softened, lag_share) / amplitude
             least = max(MIN_LEFT * squared, MIN_SQUARED * float(speeds[number]) ** 2)
             found = self._towards(wanted, secants, rest, least=least, share=share)
-            if found is None:
+            if found is None or damping > MAX_DAMPING or not self._mostly_first(motion):
                 speed = damping = error = np.nan
                 break
             secants, softened, like = found
@@ -148,7 +152,7 @@ class LevelModel:
             if abs(speed**2 - squared) < TOLERANCE * squared and error < 10 * TOLERANCE:
                 break
         lower = max(1 - (speed / float(speeds[number])) ** 2, 0.0)
-        error += ERROR_OF_SHAPE * float(np.sqrt(lower)) + ERROR_OF_NEAR_MODE * near
+        error += ERROR_OF_SHAPE * float(np.sqrt(lower)) + ERROR_OF_NEAR_MODE * near + ERROR_OF_LAG * damping
         return LevelCycle(
             frequency=speed / (2 * np.pi),
             damping=damping,
@@ -211,6 +215,11 @@ class LevelModel:
                 moved = np.linalg.norm(left @ softened[1][:, self.rigid :], axis=0) / np.maximum(stiff, 1e-9 * driven)
                 near = max(near, float(moved[stiff <= MET * driven].max(initial=0.0)))
         return near
+
+    def _mostly_first(self, motion: Array) -> bool:
+        """Whether no mean, lag or harmonic of a motion (1 + 2H, m) stores far more than the first harmonic."""
+        energy = np.einsum("ij,jk,ik->i", motion, self.slip.linear, motion)
+        return bool(energy.max() <= MAX_OTHER_ENERGY * energy[1])
 
     def _greatest(self, shape: Array) -> float:
         """The greatest displacement of a node in a shape (m,)."""
