@@ -98,11 +98,11 @@ class Measured:
         return f"{self.name}, {len(self.scores)}, {width:.1f}, {shares}; scores {self.scores.round(2)}"
 
 
-def scored(offsets: np.ndarray, frequencies: np.ndarray, test: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Scores and widths (n,) of measured frequencies [Hz] (n,), from offsets of ln f (sources, 2, n)."""
-    middle = offsets.mean(axis=1).sum(axis=0)
-    width = np.sqrt(((offsets[:, 1] - offsets[:, 0]) ** 2).sum(axis=0))
-    return (np.log(test / frequencies) - middle) / (width / (2 * SCORE)), width
+def scored(offsets: np.ndarray, median: np.ndarray, test: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Scores and widths (n,) of measured frequencies [Hz] (n,), from the best estimates and offsets (sources, 2, n)."""
+    away = np.log(test / median)
+    down, up = np.linalg.norm([np.minimum(offsets.min(axis=1), 0.0), np.maximum(offsets.max(axis=1), 0.0)], axis=1)
+    return away / (np.where(away < 0, down, up) / SCORE), down + up
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +110,7 @@ class Tee:
     """The T-specimen: its test, what a run gives for it, and a plane model of its dimensions.
 
     Args:
-        test, frequencies: ln of the measured and computed [Hz] (loads, modes).
+        test, frequencies: ln of the measured and of the best estimates [Hz] (loads, modes).
         offsets: of ln f (sources, 2, loads, modes).
         sources: their names.
         plane: ln of five frequencies of the plane model [Hz] of dimensions [mm] (4,).
@@ -137,7 +137,7 @@ class Tee:
         load, modes = np.arange(len(result.loads))[:, None], result.comparison.modes
         return cls(
             test=np.log(result.comparison.frequencies),
-            frequencies=np.log(result.frequencies[load, modes]),
+            frequencies=np.log(result.interval_best[load, modes]),
             offsets=result.interval.offsets[:, :, load, modes],
             sources=result.interval_sources,
             plane=lambda x: np.log(identify.in_plane(identify.dimensions(x))),
@@ -186,7 +186,7 @@ class Tee:
         """
         loads, modes = self.test.shape
         x, plane = self.sampled()
-        middle = (self.frequencies + self.offsets.mean(axis=1).sum(axis=0)).T  # (modes, loads)
+        middle = self.frequencies.T  # (modes, loads)
         ratio, test, noise = middle - self.plane(self.start)[:, None], self.test.T, self.covariance()
         mean = np.kron(np.eye(modes), np.ones(loads) / loads)  # (modes, modes x loads)
         left = (test - ratio).mean(axis=1) - plane  # (n, modes)
@@ -243,7 +243,8 @@ def beam() -> tuple[Measured, list[tuple[str, bool]]] | None:
             k = levels.index(level)
             friction_ends = np.array([[end[k, plot.mode]] for end in ends])
             offsets = np.concatenate([result.interval.offsets[:, :, -1, plot.mode, None], friction_ends[None]])
-            score, width = scored(offsets, result.level_frequencies[-1, k, plot.mode, None], np.array([test]))
+            best = (result.interval_best / result.frequencies)[-1, plot.mode]
+            score, width = scored(offsets, best * result.level_frequencies[-1, k, plot.mode, None], np.array([test]))
             print(f"beam, {name}, {level:g} m/s2: {result.level_frequencies[-1, k, plot.mode]:.2f} Hz, test {test:g}")
             scores.append(score)
             widths.append(width)

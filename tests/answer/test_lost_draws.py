@@ -74,4 +74,4 @@ def test_a_law_that_has_no_answer_leaves_the_waves(study, complete, monkeypatch)
     found = faying.run(study)
     assert set(complete.interval_sources) - set(found.interval_sources) == {"law"}
     assert found.wave_frequencies == pytest.approx(complete.wave_frequencies, rel=5e-4)
-    assert any("do not contain the range of the law" in note.text for note in found.notes)
+    assert any("do not contain law, which found no answer" in note.text for note in found.notes)

@@ -14,9 +14,10 @@ SCORE = 1.6448536
 
 def interval(*sources: tuple[float, float]) -> Interval:
     """One load, one mode; each source by its mean and standard deviation of ln f."""
-    offsets = np.array([[m - SCORE * sd, m + SCORE * sd] for m, sd in sources])
+    offsets = np.array([[-SCORE * sd, SCORE * sd] for _, sd in sources])
     names = tuple(f"source {k}" for k in range(len(sources)))
-    return Interval(sources=names, offsets=offsets[:, :, None, None], frequencies=np.array([[100.0]]))
+    median = 100.0 * np.exp(sum(m for m, _ in sources))
+    return Interval(sources=names, offsets=offsets[:, :, None, None], median=np.array([[median]]))
 
 
 def test_independent_normal_sources_have_the_quantiles_of_their_sum():
@@ -35,7 +36,7 @@ def test_no_stiffness_of_a_joint_passes_free_and_bonded_faces():
     found = Interval(
         sources=("law", "mode"),
         offsets=np.array([[[-0.9, 0.3]], [[-0.02, 0.02]]]).reshape(2, 2, 1, 1),
-        frequencies=np.array([[100.0]]),
+        median=np.array([[100.0]]),
         free=[60.0],
         bonded=[105.0],
     )
@@ -43,6 +44,18 @@ def test_no_stiffness_of_a_joint_passes_free_and_bonded_faces():
     # what is not known of the parts moves the bounds as well
     assert low[0, 0] == pytest.approx(60 * np.exp(-0.02))
     assert high[0, 0] == pytest.approx(105 * np.exp(0.02))
+
+
+def test_one_source_that_is_not_symmetric_keeps_its_own_quantiles():
+    """f = 100 (1 - exp(-x)) of a normal x, as stiffness that saturates: its median is no middle of its ends."""
+    x = 1.0 + 0.5 * SCORE * np.array([-1.0, 0.0, 1.0])
+    low, middle, high = 100 * (1 - np.exp(-x))
+    ends = np.log([low / middle, high / middle])
+    still = np.array([-1e-4, 1e-4])
+    offsets = np.stack([ends, still])[:, :, None, None]
+    found = Interval(sources=("law", "other"), offsets=offsets, median=np.array([[middle]]))
+    got = [found.low[0, 0], found.best[0, 0], found.high[0, 0]]
+    assert got == pytest.approx([low, middle, high], rel=1e-6)
 
 
 def test_shares_are_those_of_the_variance_and_sum_to_one():

@@ -8,17 +8,19 @@ import numpy as np
 from faying.answer.wave_band import Draws, WaveBand
 from faying.case.case import Case
 from faying.case.changed import ChangedCase, can_change, frequencies_of
-from faying.case.ends import Pair, at_median_ratio, quantiles
+from faying.case.ends import quantiles, ratios_of
 from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
 from faying.case.scatter import ENDS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
 from faying.case.solve import LoadedCase
 from faying.errors import NotConverged
+from faying.joint.joint_law import JointLaw
 from faying.notes import INCOMPLETE, Note
 from faying.result.interval import Interval
 from faying.typing import Array
 
-CAUSES = {"middle": "the median of k_t/k_n", "law": "the range of the law"}  # what a change is, where not its name
+Found = Array | NotConverged  # frequencies [Hz] (loads, m) of a change, or why it has none
+ONE_EACH_WAY = np.array([-1.0, 1.0])[:, None, None]
 NOTED_RATIO = 2.0  # factor between measured stiffness and a law that is noted
 
 
@@ -36,38 +38,58 @@ def intervals(
     """
     if not case.study.modes.intervals:
         return None, None, []
-    changes: dict[str, list[ChangedCase]] = {}
-    draws = Draws(wavy=[None] * len(case.structure.joints))
-    if can_change(case):
-        draws, plain = Draws.of(case), ChangedCase.nothing(case)
-        changes["waves"] = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
-        # about the median of k_t/k_n: where Mindlin's ratio holds the faces, the law would hardly matter
-        laws = [at_median_ratio(case, joint) for joint in case.structure.joints]
-        factors = law_factors(case)
-        changes["middle"] = [replace(plain, laws=laws)]
-        if any(factors):
-            both = [list(zip(laws, [three and three[k] for three in factors], strict=True)) for k in (0, 2)]
-            changes["law"] = [
-                replace(plain, laws=[law.scaled(factor or 1.0) for law, factor in pairs]) for pairs in both
-            ]
-        if len(case.loads) == 1:
-            changes["preload"] = [replace(plain, factor=factor) for factor in _preload_factors(case)]
-    found = iter(frequencies_of(case, states, [one for some in changes.values() for one in some]))
-    by_name = {name: [next(found) for _ in some] for name, some in changes.items()}
-    notes = [*_incomplete(by_name), *draws.notes(case), *law_notes(case)]
-    solved = {name: [one for one in some if not isinstance(one, NotConverged)] for name, some in by_name.items()}
-    band = draws.band(states, by_name.get("waves", []))
-    pairs = {name: (solved[name][0], solved[name][1]) for name in ("law", "preload") if len(solved.get(name, [])) == 2}
-    middle = solved["middle"][0] if solved.get("middle") else None
-    return band, _combined(case, states, pairs, mesh, middle, band), notes
+    if not can_change(case):
+        text = (
+            "the intervals do not contain law, k_t/k_n and waves, which are found for bolts pulled at once, springs "
+            "per area and hysteretic damping"
+        )
+        return None, _combined(case, states, mesh), [Note(code=INCOMPLETE, text=text)]
+    draws = Draws.of(case)
+    plain = ChangedCase.nothing(case)
+    waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
+    middle = replace(waves[0] if waves else plain, laws=_laws(case))
+    ends = _ends(case, middle)
+    found = frequencies_of(case, states, [*waves, middle], ends=[one for pair in ends.values() for one in pair])
+    of_waves, about, rest = found[: len(waves)], found[len(waves)], iter(found[len(waves) + 1 :])
+    pairs = {name: (next(rest), next(rest)) for name in ends}
+    band = draws.band(states, of_waves)
+    interval = _combined(case, states, mesh, band, of_waves[0] if waves else None, about, pairs)
+    lost = _incomplete({"draws of waves": of_waves, "the medians of law and k_t/k_n": [about], **pairs})
+    return band, interval, [*lost, *draws.notes(case), *law_notes(case)]
 
 
-def _incomplete(by_name: Mapping[str, Sequence[Array | NotConverged]]) -> Iterator[Note]:
-    """Say which causes, or how many of their draws, have no answer and are not in the intervals."""
-    for name, some in by_name.items():
+def _laws(case: Case, factor: int = 1, ratio: int = 1) -> list[JointLaw]:
+    """The law of each joint at 5, 50 or 95 % (0, 1, 2) of the factor on its stiffness and of k_t/k_n."""
+    out = []
+    for joint, factors in zip(case.structure.joints, law_factors(case), strict=True):
+        ratios = ratios_of(case, joint)
+        law = replace(joint.law, tangential=ratios[ratio]) if ratios[0] < ratios[2] else joint.law
+        out.append(law.scaled(factors[factor]) if factors else law)
+    return out
+
+
+def _ends(case: Case, middle: ChangedCase) -> dict[str, tuple[ChangedCase, ChangedCase]]:
+    """Both ends of what moves the joints, about a draw of waves with the medians of the law and of k_t/k_n.
+
+    Faces without waves under Mindlin's ratio are the stiffest that they can be: there a law would hardly matter.
+    """
+    out: dict[str, tuple[ChangedCase, ChangedCase]] = {}
+    if any(law_factors(case)):
+        out["law"] = replace(middle, laws=_laws(case, factor=0)), replace(middle, laws=_laws(case, factor=2))
+    if any(low < high for low, _, high in (ratios_of(case, joint) for joint in case.structure.joints)):
+        out["k_t/k_n"] = replace(middle, laws=_laws(case, ratio=0)), replace(middle, laws=_laws(case, ratio=2))
+    if len(case.loads) == 1:
+        low, high = _preload_factors(case)
+        out["preload"] = replace(middle, factor=low), replace(middle, factor=high)
+    return out
+
+
+def _incomplete(found: Mapping[str, Sequence[Found]]) -> Iterator[Note]:
+    """Say what has no answer and is not in the intervals, and of several draws how many."""
+    for name, some in found.items():
         faults = [one for one in some if isinstance(one, NotConverged)]
         if faults:
-            what = f"{len(faults)} of {len(some)} draws of waves" if name == "waves" else CAUSES.get(name, name)
+            what = f"{len(faults)} of {len(some)} {name}" if len(some) > 2 else name
             yield Note(code=INCOMPLETE, text=f"the intervals do not contain {what}, which found no answer: {faults[0]}")
 
 
@@ -114,39 +136,44 @@ def law_notes(case: Case) -> Iterator[Note]:
 def _combined(
     case: Case,
     states: Sequence[LoadedCase],
-    pairs: dict[str, Pair],
     mesh: MeshError | None,
-    middle: Array | None = None,
     band: WaveBand | None = None,
+    drawn: Found | None = None,
+    about: Found | None = None,
+    pairs: Mapping[str, tuple[Found, Found]] | None = None,
 ) -> Interval:
-    """The interval from frequencies [Hz] (loads, m) at both ends of each thing, draws of waves, and the table.
+    """The interval of each frequency, by what each thing moves ln f (loads, m) from the best estimate.
 
-    middle: frequencies at the median of k_t/k_n, about which the ends of the law lie.
+    Args:
+        case, states: the case and its state under each load.
+        mesh: the error of the mesh.
+        band: draws of waves under the laws as they are.
+        drawn: the first of them [Hz], as the case has its waves where it has none drawn.
+        about: the same draw with the medians of the law and of k_t/k_n.
+        pairs: both ends of each thing about that.
     """
-    frequencies = np.stack([state.damped.frequencies for state in states])
-    for name in {name for state in states for name in state.ends or {} if name in SCATTER}:
-        both = [(state.ends or {})[name] for state in states]
-        pairs[name] = np.stack([one[0] for one in both]), np.stack([one[1] for one in both])
-    found = {name: np.log(np.stack(pair) / frequencies) for name, pair in pairs.items()}
-    if middle is not None:
-        shift = np.log(middle / frequencies)
-        if "law" in found:
-            found["law"] = found["law"] - shift
-        if "k_t/k_n" in found:
-            half = (found["k_t/k_n"][1] - found["k_t/k_n"][0]) / 2
-            found["k_t/k_n"] = np.stack([shift - half, shift + half])
+    f = np.stack([state.damped.frequencies for state in states])
+    found, middle = {}, np.zeros(f.shape)
+    if isinstance(about, np.ndarray) and not isinstance(drawn, NotConverged):
+        middle += np.log(about / (f if drawn is None else drawn))
+        for name, (low, high) in (pairs or {}).items():
+            if isinstance(low, np.ndarray) and isinstance(high, np.ndarray):
+                found[name] = np.log(np.stack([low, high]) / about)
     if band is not None:
-        logs = np.log(band.frequencies / frequencies)
-        half = SCORE * logs.std(axis=0, ddof=1)
-        found["waves"] = np.stack([logs.mean(axis=0) - half, logs.mean(axis=0) + half])
+        logs = np.log(band.frequencies / f)
+        middle += logs.mean(axis=0)
+        found["waves"] = SCORE * logs.std(axis=0, ddof=1) * ONE_EACH_WAY
+    if all(state.ends and "scan" in state.ends for state in states):
+        found["scan"] = np.log(np.stack([(state.ends or {})["scan"] for state in states], axis=1) / f)
     if len(states) > 1:
-        found["preload"] = _by_preload(case.loads, frequencies, _preload_factors(case))
+        curve = about if isinstance(about, np.ndarray) else f
+        found["preload"] = _by_preload(case.loads, curve, _preload_factors(case))
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):
-        found[name] = SCORE * sd * np.array([-1.0, 1.0])[:, None, None] * np.ones(frequencies.shape)
+        found[name] = SCORE * sd * ONE_EACH_WAY * np.ones(f.shape)
     if mesh is not None:
-        found["mesh"] = mesh.offsets
+        found["mesh"], middle = mesh.offsets, middle + mesh.middle
     names = tuple(name for name in SCATTER if name in found)
-    return Interval(sources=names, offsets=np.stack([found[name] for name in names]), frequencies=frequencies)
+    return Interval(sources=names, offsets=np.stack([found[name] for name in names]), median=f * np.exp(middle))
 
 
 def _preload_factors(case: Case) -> tuple[float, float]:

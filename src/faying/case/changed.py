@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -40,54 +39,61 @@ def can_change(case: Case) -> bool:
 
 
 def frequencies_of(
-    case: Case, states: Sequence[LoadedCase], changes: Sequence[ChangedCase]
+    case: Case, states: Sequence[LoadedCase], changes: Sequence[ChangedCase], *, ends: Sequence[ChangedCase] = ()
 ) -> list[Array | NotConverged]:
-    """Frequencies [Hz] (loads, m) of each change, or why it has none.
+    """Frequencies [Hz] (loads, m) of each change and then of each of the ends, or why it has none.
 
     The basis is made for the first and the last load of all of them. Frequencies are in the order of the modes of the
-    states, each that of the mode whose shape it has.
+    states, each that of the mode whose shape it has: those of the ends by way of the last change.
     """
-    if not changes:
+    every = [*changes, *ends]
+    if not every:
         return []
-    ends = sorted({0, len(states) - 1})
+    at = sorted({0, len(states) - 1})
     last, structure = states[-1], case.structure
     reduction = Reduction.about(
         structure,
         factor=last.modes.factorisation,
         reference=(last.modes.factorised + last.modes.shift * structure.dynamic_matrices[1]).tocsr(),
         state=last.preload.displacement,
-        shapes=np.concatenate([states[k].modes.shapes[:, case.rigid_count :] for k in ends], axis=1),
+        shapes=np.concatenate([states[k].modes.shapes[:, case.rigid_count :] for k in at], axis=1),
         count=case.study.modes.count,
     )
     friction = [joint.friction for joint in structure.joints]
     forces = [np.array(one.forces) for one in case.study.preloads]
-    every = [
-        [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
-        for one in changes
-    ]
-    starts = _trained(reduction, [[loads[k] for k in ends] for loads in every])
-    solved = [start for start in starts if not isinstance(start, NotConverged)]
-    plain = ChangedCase.nothing(case)
-    at_rest = cache(
-        lambda k: reduction.evaluate_at(
-            Gapped(laws=plain.laws, forces=forces[k], friction=friction, gaps=plain.gaps), solved[0]
-        )
-    )
 
-    def followed(one: Variant, k: int) -> Array:
-        """Frequencies in the order of the modes at a load."""
-        at = at_rest(k)
-        return np.asarray(one.frequencies[follow(at.shapes, one.shapes, reduction.model.dynamic_mass, at.frequencies)])
+    def loads_of(one: ChangedCase) -> list[Gapped]:
+        return [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
 
-    def at_loads(loads: Sequence[Gapped], start: Array | NotConverged) -> Array | NotConverged:
-        if isinstance(start, NotConverged):
-            return start
+    variants = [loads_of(one) for one in every]
+    starts = _trained(reduction, [[loads[k] for k in at] for loads in variants])
+    solved = next((start for start in starts if not isinstance(start, NotConverged)), None)
+    if solved is None:
+        return starts
+    before = _at_loads(reduction, loads_of(ChangedCase.nothing(case)), solved)
+    way = [np.arange(len(one.frequencies)) for one in before]  # of each mode of the states in those of `before`
+    out: list[Array | NotConverged] = []
+    for number, (loads, start) in enumerate(zip(variants, starts, strict=True)):
         try:
-            return np.stack([followed(reduction.evaluate_at(one, start), k) for k, one in enumerate(loads)])
+            if isinstance(start, NotConverged):
+                raise start
+            found = _at_loads(reduction, loads, start)
         except NotConverged as fault:
-            return fault
+            out.append(fault)
+            continue
+        mass = reduction.model.dynamic_mass
+        order = [
+            follow(old.shapes, new.shapes, mass, old.frequencies)[first]
+            for old, new, first in zip(before, found, way, strict=True)
+        ]
+        out.append(np.stack([one.frequencies[k] for one, k in zip(found, order, strict=True)]))
+        if number == len(changes) - 1:
+            before, way = found, order
+    return out
 
-    return [at_loads(loads, start) for loads, start in zip(every, starts, strict=True)]
+
+def _at_loads(reduction: Reduction, loads: Sequence[Gapped], start: Array) -> list[Variant]:
+    return [reduction.evaluate_at(one, start) for one in loads]
 
 
 def _trained(reduction: Reduction, every: Sequence[Sequence[Gapped]]) -> list[Array | NotConverged]:

@@ -21,7 +21,7 @@ Pair = tuple[Array, Array]  # frequencies [Hz] at both ends of one number
 
 
 def ends_of(case: Case, preload: PreloadState, engine: Engine, modes: Modes) -> dict[str, Pair]:
-    """Frequencies of one load at 5 and at 95 % of what changes no pressure: the scan's range, and k_t/k_n.
+    """Frequencies of one load at 5 and at 95 % of the range of the law that the scan makes.
 
     modes: at this load, whose order the frequencies have. "contact": with each half of the points of the joints, for
     the error of the mesh.
@@ -39,14 +39,6 @@ def ends_of(case: Case, preload: PreloadState, engine: Engine, modes: Modes) -> 
     if any(law.has_range for law in laws):
         out["scan"] = pair(
             [(replace(law, end="low"), replace(law, end="high")) if law.has_range else (law, law) for law in laws]
-        )
-    ratios = [ratios_of(case, joint) for joint in joints]
-    if case.study.modes.intervals and any(low < high for low, _, high in ratios):
-        out["k_t/k_n"] = pair(
-            [
-                (replace(law, tangential=low), replace(law, tangential=high)) if low < high else (law, law)
-                for law, (low, _, high) in zip(laws, ratios, strict=True)
-            ]
         )
     if case.study.modes.intervals and not any(joint.per_node for joint in joints):
         springs = case.structure.springs(preload.pressures)
@@ -82,9 +74,3 @@ def ratios_of(case: Case, joint: FittedJoint) -> tuple[float, float, float]:
     found = quantiles(case, own, common, default("k_t/k_n"))
     assert found is not None
     return found
-
-
-def at_median_ratio(case: Case, joint: FittedJoint) -> JointLaw:
-    """The law of a joint with the median of k_t/k_n, where that scatters."""
-    low, middle, high = ratios_of(case, joint)
-    return replace(joint.law, tangential=middle) if low < high else joint.law

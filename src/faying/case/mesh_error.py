@@ -41,9 +41,14 @@ class MeshError:
         return self.parts + self.contact
 
     @property
+    def middle(self) -> Array:
+        """Where a finer mesh has ln f in the middle (loads, m)."""
+        return -self.parts
+
+    @property
     def offsets(self) -> Array:
-        """Where a finer mesh has ln f (2, loads, m): from twice the error of the parts to none of it."""
-        return np.stack([-2 * self.parts - self.contact, self.contact])
+        """Both ends about the middle (2, loads, m): from twice the error of the parts to none of it."""
+        return np.stack([-self.total, self.total])
 
 
 def mesh_error(case: Case, states: Sequence[LoadedCase]) -> MeshError | None:

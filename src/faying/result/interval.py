@@ -20,49 +20,47 @@ MIN_SQUARE = 1e-300  # where nothing moves a frequency
 class Interval(Summary):
     """Best estimate of every frequency, and its 5 to 95 %.
 
-    Each source moves ln f by itself, to `offsets[:, 0]` at its 5 % and `offsets[:, 1]` at its 95 % end. Sources are
-    independent: their middles add to that of the whole, the best estimate, and the squares of their widths add. Where a
-    value that is assumed lies at an end of what it may be, so does the frequency as modelled.
+    Each source moves ln f from the best estimate by itself, to `offsets[:, 0]` at its 5 % and `offsets[:, 1]` at its
+    95 % end. Sources are independent: the squares of what they move a frequency down by add, and the squares of what
+    they move it up by.
 
     Args:
         sources: what is not known, s names.
         offsets: of ln f (s, 2, loads, modes).
-        frequencies: as modelled [Hz] (loads, modes), each assumed value as it is.
+        median: frequencies with the median of each source [Hz] (loads, modes).
         free, bonded: frequencies [Hz] (modes,) with the faces apart and bonded, which no stiffness of a joint passes;
             what is not known of the parts does.
 
     Source:
-        First-order propagation: JCGM 100:2008 (GUM), equation (10).
+        First-order propagation: JCGM 100:2008 (GUM), equation (10), on each side by itself.
     """
 
     sources: tuple[str, ...]
     offsets: Array
-    frequencies: Array
+    median: Array
     free: ArrayLike = 0.0
     bonded: ArrayLike = np.inf
 
     @property
     def low(self) -> Array:
         """5 % [Hz] (loads, modes)."""
-        return self._at(-0.5)
+        return self._within(self.median * np.exp(-self._distances[0]))
 
     @property
     def best(self) -> Array:
         """The best estimate, the median of all that is not known [Hz] (loads, modes)."""
-        return self._at(0.0)
+        return self._within(self.median)
 
     @property
     def high(self) -> Array:
         """95 % [Hz] (loads, modes)."""
-        return self._at(0.5)
+        return self._within(self.median * np.exp(self._distances[1]))
 
-    def _at(self, share: float) -> Array:
-        """Frequencies so many widths from the middle, between those of free and of bonded faces."""
-        middle = self.offsets.mean(axis=1).sum(axis=0)
+    def _within(self, frequencies: Array) -> Array:
+        """Frequencies between those of free and of bonded faces, but for what is not known of the parts."""
         of_parts = [k for k, name in enumerate(self.sources) if name in OF_PARTS]
         room = np.exp(np.sqrt(self._squares[of_parts].sum(axis=0)) / 2)
-        found = self.frequencies * np.exp(middle + share * self.width)
-        return np.asarray(np.clip(found, np.asarray(self.free) / room, np.asarray(self.bonded) * room))
+        return np.asarray(np.clip(frequencies, np.asarray(self.free) / room, np.asarray(self.bonded) * room))
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return 5 %, the best estimate and 95 % of each mode at the greatest preload."""
@@ -79,9 +77,15 @@ class Interval(Summary):
         return np.asarray((self.offsets[:, 1] - self.offsets[:, 0]) ** 2)
 
     @property
+    def _distances(self) -> Array:
+        """From the best estimate down to 5 % and up to 95 %, in ln f (2, loads, modes) [-]."""
+        down, up = np.minimum(self.offsets.min(axis=1), 0.0), np.maximum(self.offsets.max(axis=1), 0.0)
+        return np.asarray(np.linalg.norm([down, up], axis=1))
+
+    @property
     def width(self) -> Array:
         """From 5 to 95 % in ln f (loads, modes) [-]."""
-        return np.asarray(np.sqrt(self._squares.sum(axis=0)))
+        return np.asarray(self._distances.sum(axis=0))
 
     @property
     def shares(self) -> Array:
@@ -95,5 +99,4 @@ class Interval(Summary):
         left: what is left of the spread of a source, by its name [-].
         """
         factors = np.array([left.get(name, 1.0) for name in self.sources])[:, None, None, None]
-        middle = self.offsets.mean(axis=1, keepdims=True)
-        return replace(self, offsets=middle + (self.offsets - middle) * factors)
+        return replace(self, offsets=self.offsets * factors)

@@ -465,12 +465,12 @@ class RunRecord(Recorded):
     @property
     def interval(self) -> Interval | None:
         """Best estimate and interval of each frequency, and what makes it; None in a result without one."""
-        if self.interval_offsets is None:
+        if self.interval_offsets is None or self.interval_best is None:
             return None
         return Interval(
             sources=self.interval_sources,
             offsets=self.interval_offsets,
-            frequencies=self.frequencies,
+            median=self.interval_best,
             free=self.free,
             bonded=self.bonded,
         )
