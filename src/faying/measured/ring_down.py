@@ -235,6 +235,8 @@ def ring_down_of_frf(
         InputError: as `ring_down`.
     """
     number(impulse, "impulse of the hit", "N*s", least=0)
+    whole(output, "output", least=0, greatest=len(frf.outputs) - 1)
+    whole(input, "input", least=0, greatest=len(frf.inputs) - 1)
     _check_band(band, float(frf.frequency[-1]))
     values, step = frf.values[output, input], frf.step
     if not np.all(np.isfinite(values)):
