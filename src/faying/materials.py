@@ -80,7 +80,7 @@ class Material:
         if self.vickers is not None:
             instance(self.vickers, VickersHardness, f"material {self.name!r}: vickers", "give a VickersHardness")
         if isnan(self.E) or self.E <= 0:
-            raise InputError(f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9")
+            raise InputError(f"material {self.name!r}: E = {self.E:.6g} Pa; it must be positive, for example 200e9")
         if not -1 < self.nu <= 0.5:
             raise InputError(f"material {self.name!r}: nu = {self.nu}; it must be in (-1, 0.5], for example 0.3")
         strengths = ("yield_strength", "hardness", "brinell", "bearing_limit")

@@ -235,7 +235,7 @@ def test_shapes_and_refusals(name: str) -> None:
         (lambda: asperity.JK(R=R, pair=PAIR, height=0.0), "height = 0.0; it must be positive"),
         (lambda: asperity.JK(R=R, pair=PAIR, closure="other"), '"consistent" or "printed"'),
         (lambda: asperity.ZX(R=R, pair=PAIR, D=2.0, height=1e-7), "between 2 and 3"),
-        (lambda: asperity.ZX(R=R, pair=PAIR, D=2.4, height=0.0), "height = 0.0 m; it must be positive"),
+        (lambda: asperity.ZX(R=R, pair=PAIR, D=2.4, height=0.0), "height = 0 m; it must be positive"),
         (
             lambda: asperity.KogutEtsion(R=R, pair=ContactPair(Material(name="m", E=1e9, nu=0.3), RIGID)).at(1e-9),
             "neither hardness nor yield_strength",
