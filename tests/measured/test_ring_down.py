@@ -250,6 +250,12 @@ def test_what_gives_no_curve_is_refused(changes, message):
         ring_down(given.pop("signal"), given.pop("sampling_rate"), **given)
 
 
+def test_a_motion_that_goes_on_longer_than_any_decay_is_refused():
+    t = np.arange(int(25 * RATE)) / RATE
+    with pytest.raises(InputError, match="a decay for at most 10,000: narrow the band"):
+        ring_down(decay(t, hz=600.0, ratio=1e-5), RATE, band=(300, 900))
+
+
 def test_an_impulse_is_needed_for_an_frf():
     frf = FRF(frequency=[1.0, 2.0], values=[[[1, 1]]], outputs=[(1, "z")], inputs=[(1, "z")], quantity="accelerance")
     with pytest.raises(faying.InputError, match="impulse of the hit"):

@@ -5,6 +5,7 @@ from typing import Self
 
 import numpy as np
 
+from faying.errors import InputError
 from faying.typing import Array, Complex, Index, Mask
 
 ORDERS = (1, 2, 3)  # exponentials in a window
@@ -17,12 +18,13 @@ ONE_IS_ENOUGH = 0.2  # share of the windows with more than one exponential up to
 NOISE_ALONE = 0.1  # of the power: noise beyond which the decay has ended
 NOISE_AT_THE_END = 0.1  # noise over amplitude up to which an exponential is followed
 NEAREST_WINDOWS = 7  # windows over which noise and scatter are averaged
-PENCIL = 64  # greatest length of the pencil [samples]: longer ones gain nothing and cost with the third power
-STEPS = 6  # of Gauss and Newton; from the pencil's poles three reach six digits
+MOST_SAMPLES = 10_000  # of a signal: a mode of 0.01 % in a band as wide as its frequency is down to 0.2 % then
+PENCIL = 32  # greatest length of the pencil [samples]: least squares follow it
+STEPS = 4  # of Gauss and Newton: from the poles of the pencil three reach six digits
 SHORTER_STEP = 0.25  # of a step, after one that did not lower the residual
 GREATEST_GROWTH = 30.0  # |ln| of the growth of an exponential within half a window: keeps trial steps finite
 TINY = 1e-300  # [unit of the signal squared]: keeps logarithms of silence finite
-LEAST_SINGULAR_VALUE = 1e-10  # singular value that counts, over the greatest: below it two exponentials are one
+LEAST_SINGULAR_VALUE = 1e-13  # of normal equations, over the greatest: below it two exponentials are one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,17 +56,14 @@ class Exponentials:
         """
         t = np.arange(windows.shape[1]) - (windows.shape[1] - 1) / 2
         pole, bend = _pencil(windows, order), np.zeros(len(windows), complex)
-        start = np.abs(_solve(_growth(pole, bend, t), windows) * np.exp(_within(pole * t[0])))
+        start = np.abs(cls._at(windows, pole, bend, t)[0].amplitude * np.exp(_within(pole * t[0])))
         pole = np.take_along_axis(pole, np.argsort(-start, axis=1), axis=1)
-        best = cls._at(windows, pole, bend, t)
-        step, size = best[1], np.ones(len(windows))
+        best, step = cls._at(windows, pole, bend, t)
         for _ in range(STEPS):
-            pole = best[0].pole + size[:, None] * step[:, :order]
-            trial = cls._at(windows, pole, best[0].bend + size * step[:, order], t)
-            less = trial[0].residual < best[0].residual
-            best = (cls._choose(less, trial[0], best[0]), np.where(less[:, None], trial[1], best[1]))
-            step, size = best[1], np.where(less, 1.0, SHORTER_STEP * size)
-        return best[0]
+            trial, further = cls._at(windows, best.pole + step[:, :order], best.bend + step[:, order], t)
+            less = trial.residual < best.residual
+            best, step = cls._choose(less, trial, best), np.where(less[:, None], further, SHORTER_STEP * step)
+        return best
 
     def nearest(self) -> Array:
         """Least distance of two poles [1/sample] (w,), infinite for one."""
@@ -77,21 +76,20 @@ class Exponentials:
         """Best amplitudes for given poles and bends, and the step of Gauss and Newton of poles and bend."""
         order = pole.shape[1]
         growth = _growth(pole, bend, t)
-        amplitude = _solve(growth, windows)
+        amplitude = _least_squares(growth, windows)[0]
         part = amplitude[:, None, :] * growth
         rest = windows - part.sum(axis=2)
         slopes = np.concatenate([growth, t[:, None] * part, (t * t)[:, None] * part[:, :, :1]], axis=2)
-        inverse = np.linalg.pinv(slopes, rcond=LEAST_SINGULAR_VALUE)[:, order:]  # rows: of each pole, and of the bend
-        variance = np.sum(np.abs(inverse) ** 2, axis=2)
+        step, variance = _least_squares(slopes, rest)
         fit = cls(
             pole=pole,
             amplitude=amplitude,
             bend=bend,
             residual=np.mean(np.abs(rest) ** 2, axis=1),
-            pole_variance=variance[:, :order],
-            bend_variance=variance[:, order],
+            pole_variance=variance[:, order : 2 * order],
+            bend_variance=variance[:, -1],
         )
-        return fit, (inverse @ rest[:, :, None])[:, :, 0]
+        return fit, step[:, order:]
 
     @classmethod
     def _choose(cls, first: Mask, one: Self, other: Self) -> Self:
@@ -181,6 +179,9 @@ class Track:
         Returns:
             The track up to where it is lost, or None where noise is all that there is.
 
+        Raises:
+            InputError: a signal of more samples than any decay has.
+
         Source:
             Schwarz 1978, doi:10.1214/aos/1176344136 (the choice of length and order).
         """
@@ -188,7 +189,13 @@ class Track:
         motion = np.flatnonzero(mean(np.min(first.noise, axis=0)) < NOISE_ALONE * mean(first.strength))
         if not len(motion):
             return None
-        whole = cls._best(signal[: motion[-1] * first.hop + shortest], shortest, share)
+        signal = signal[: motion[-1] * first.hop + shortest]
+        if len(signal) > MOST_SAMPLES:
+            raise InputError(
+                f"the motion goes on for {len(signal):,} times one over the width of its band, a decay for at most "
+                f"{MOST_SAMPLES:,}: narrow the band, or end the record with the decay"
+            )
+        whole = cls._best(signal, shortest, share)
         end = whole.time[max(int(np.argmin([*whole.clear(), False])), 1) - 1] + shortest / 2
         return cls._best(signal[: max(int(end), 2 * shortest)], shortest, share)
 
@@ -258,10 +265,18 @@ def widened(errors: Array, values: Array) -> Array:
 
 
 def _pencil(windows: Complex, order: int) -> Complex:
-    """Poles [1/sample] (w, order): strongest right singular vectors V of the Hankel matrix have V[1:] = V[:-1] Z."""
-    length = min(windows.shape[1] // 2, PENCIL)
-    hankel = np.lib.stride_tricks.sliding_window_view(windows, length + 1, axis=1)
-    strongest = np.swapaxes(np.linalg.svd(hankel, full_matrices=False)[2][:, :order], 1, 2)
+    """Poles [1/sample] (w, order): strongest right singular vectors V of the Hankel matrix H have V[1:] = V[:-1] Z.
+
+    V are eigenvectors of H' H, whose diagonals are sums of products of samples that lie d apart.
+    """
+    count = windows.shape[1]
+    length = min(count // 2, PENCIL)
+    gram = np.zeros((len(windows), length + 1, length + 1), complex)
+    for d in range(length + 1):
+        sums = np.cumsum(np.pad(windows[:, : count - d].conj() * windows[:, d:], ((0, 0), (1, 0))), axis=1)
+        i = np.arange(length + 1 - d)
+        gram[:, i + d, i] = (sums[:, count - length :] - sums[:, : length + 1 - d]).conj()  # the lower half
+    strongest = np.linalg.eigh(gram)[1][:, :, -order:].conj()
     ratio = np.linalg.eigvals(np.linalg.pinv(strongest[:, :-1]) @ strongest[:, 1:])
     return np.asarray(np.log(np.where(ratio == 0, TINY, ratio)))
 
@@ -277,6 +292,12 @@ def _growth(pole: Complex, bend: Complex, t: Array) -> Complex:
     return np.exp(_within(power))
 
 
-def _solve(columns: Complex, windows: Complex) -> Complex:
-    """Least squares window by window: columns (w, n, m), windows (w, n), result (w, m)."""
-    return np.asarray((np.linalg.pinv(columns, rcond=LEAST_SINGULAR_VALUE) @ windows[:, :, None])[:, :, 0])
+def _least_squares(columns: Complex, windows: Complex) -> tuple[Complex, Array]:
+    """Least squares window by window: columns (w, n, m), windows (w, n); result and variance over a sample's (w, m)."""
+    size = np.linalg.norm(columns, axis=1)
+    scaled = columns / (size + TINY)[:, None, :]
+    adjoint = np.swapaxes(scaled, 1, 2).conj()
+    inverse = np.linalg.pinv(adjoint @ scaled, rcond=LEAST_SINGULAR_VALUE, hermitian=True)
+    found = (inverse @ (adjoint @ windows[:, :, None]))[:, :, 0]
+    variance = np.einsum("wkk->wk", inverse).real
+    return found / (size + TINY), variance / (size + TINY) / (size + TINY)
