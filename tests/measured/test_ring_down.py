@@ -250,6 +250,13 @@ def test_what_gives_no_curve_is_refused(changes, message):
         ring_down(given.pop("signal"), given.pop("sampling_rate"), **given)
 
 
+@pytest.mark.parametrize("size", [1e-200, 1e150])
+def test_the_size_of_a_motion_does_not_matter(size):
+    found = ring_down(size * decay(np.arange(8192) / RATE), RATE, band=(70, 130))
+    assert found.damping == pytest.approx(0.01, rel=2e-3)
+    assert found.acceleration == pytest.approx(size * 10 * np.exp(-0.01 * OMEGA * found.time), rel=1e-3)
+
+
 def test_a_motion_that_goes_on_longer_than_any_decay_is_refused():
     t = np.arange(int(25 * RATE)) / RATE
     with pytest.raises(InputError, match="a decay for at most 10,000: narrow the band"):

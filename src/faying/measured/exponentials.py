@@ -23,7 +23,7 @@ PENCIL = 32  # greatest length of the pencil [samples]: least squares follow it
 STEPS = 4  # of Gauss and Newton: from the poles of the pencil three reach six digits
 SHORTER_STEP = 0.25  # of a step, after one that did not lower the residual
 GREATEST_GROWTH = 30.0  # |ln| of the growth of an exponential within half a window: keeps trial steps finite
-TINY = 1e-300  # [unit of the signal squared]: keeps logarithms of silence finite
+TINY = 1e-100  # next to the largest sample, 1: keeps silence finite
 LEAST_SINGULAR_VALUE = 1e-13  # of normal equations, over the greatest: below it two exponentials are one
 
 
@@ -172,7 +172,7 @@ class Track:
         describe modes that beat. Where one exponential is enough, the windows are the shortest.
 
         Args:
-            signal: (n,) complex.
+            signal: (n,) complex, of the order of 1.
             shortest: least length of a window [samples].
             share: independent samples among all, by the band of the signal.
 

@@ -284,7 +284,8 @@ def _curve(
             f"s are lost at its ends and one stretch takes {shortest * every / rate:.3g} s; widen the band or record "
             "longer"
         )
-    track = Track.follow(slow, shortest, (1 - EDGE) * width * every / rate)
+    scale = float(np.abs(slow).max()) or 1.0
+    track = Track.follow(slow / scale, shortest, (1 - EDGE) * width * every / rate)
     points = None if track is None else _points(track, rate / every, middle, power)
     if points is None or len(points.time) < MIN_POINTS:
         raise InputError(
@@ -292,7 +293,7 @@ def _curve(
             f"of itself; {MIN_POINTS} are needed: noise, or more than one mode in the band that this record cannot "
             "separate; move the band, start after the hit, or record longer"
         )
-    return replace(points, time=start + cut / rate + points.time)
+    return replace(points, time=start + cut / rate + points.time, acceleration=scale * points.acceleration)
 
 
 def _points(track: Track, rate: float, middle: float, power: int) -> MeasuredBackbone:
