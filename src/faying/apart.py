@@ -1,12 +1,13 @@
-"""Calls in a process of their own: on some files a library dies, or never returns."""
+"""Calls in processes of their own: on some files a library dies, or never returns; many calls take many cores."""
 
 import pickle
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
-from typing import ParamSpec, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar, cast
 
 from faying.errors import FayingError
 
@@ -47,6 +48,29 @@ def apart(seconds: float | None, function: Callable[P, T], *args: P.args, **name
     if isinstance(found, FayingError):
         raise found
     return cast("T", found)
+
+
+def in_processes(
+    function: Callable[..., T], calls: Sequence[tuple[Any, ...]], jobs: int, **options: Any
+) -> Iterator[T]:
+    """Call a function with each of some tuples of arguments in so many processes, and yield answers as they come.
+
+    Args:
+        function, calls, jobs: what is called, its arguments, and the number of processes.
+        options: of joblib's Parallel.
+
+    Raises:
+        FayingError: A process was ended from outside; what the function raised.
+    """
+    from joblib import Parallel, delayed
+
+    pool = Parallel(n_jobs=jobs, return_as="generator_unordered", backend="loky", **options)
+    try:
+        yield from pool(delayed(function)(*arguments) for arguments in calls)
+    except BrokenProcessPool:
+        raise FayingError(
+            f"one of {jobs} processes was ended from outside, often for lack of memory; call again with fewer of them"
+        ) from None
 
 
 def serve(order: str) -> None:

@@ -14,6 +14,7 @@ from faying.units import EXAMPLES, parse
 __all__ = ["choice", "flag", "instance", "number", "path", "plain", "real", "several", "shown", "text", "whole"]
 
 Kind = TypeVar("Kind")
+LONGEST_NAME = 240  # bytes of the name of a file: file systems hold 255, and what is being written has a longer name
 
 
 def real(value: object, name: str, unit: str = "") -> float:
@@ -151,9 +152,13 @@ def text(value: object, name: str) -> str:
 
 
 def path(value: object, name: str) -> Path:
-    """Return the path of a file or folder; InputError for what is neither text nor a path."""
+    """Return the path of a file or folder; InputError for what is neither text nor a path, or no file can be called."""
     if not isinstance(value, str | PathLike) or isinstance(value, bytes):
         raise InputError(f"{name} = {shown(value)}; give the name of a file as text, or a Path")
+    if not str(value).strip() or "\0" in str(value):
+        raise InputError(f"{name} = {shown(value)}: the name is empty or has a zero byte; give the path of a file")
+    if any(len(part.encode(errors="surrogateescape")) > LONGEST_NAME for part in Path(value).parts):
+        raise InputError(f"{name}: a name of more than {LONGEST_NAME} bytes; give a shorter one")
     return Path(value)
 
 

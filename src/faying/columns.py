@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from faying import checks
 from faying.errors import InputError, ReadError
 from faying.files import refuse_decimal_comma
 from faying.memory import require
@@ -139,7 +140,7 @@ def read_columns(
         ReadError: with the file and the line.
     """
     try:
-        hold_table(path)
+        hold_table(checks.path(path, "path"))
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as fault:
         raise ReadError(f"{path}: cannot be read as text ({fault})") from None

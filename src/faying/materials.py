@@ -4,12 +4,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cached_property
-from math import inf, isfinite, isnan
+from math import inf, isnan
 
-from faying.checks import instance, real, text
+from faying.checks import instance, number, real, text
 from faying.errors import InputError, shown
 from faying.hardness import BRINELL_RANGE, VickersHardness
 
+MOST_FRICTION = 2.0  # coefficient of friction: clean metals in air reach 1.4
 STIFFEST = 0.495  # Poisson's ratio from which displacements alone cannot describe a solid
 MAX_EXPANSION = 1e-3  # 1/K: beyond it a power of ten is wrong
 UNITS = {
@@ -79,7 +80,7 @@ class Material:
         if self.vickers is not None:
             instance(self.vickers, VickersHardness, f"material {self.name!r}: vickers", "give a VickersHardness")
         if isnan(self.E) or self.E <= 0:
-            raise InputError(f"material {self.name!r}: E = {self.E} Pa; it must be positive, for example 200e9")
+            raise InputError(f"material {self.name!r}: E = {self.E:.6g} Pa; it must be positive, for example 200e9")
         if not -1 < self.nu <= 0.5:
             raise InputError(f"material {self.name!r}: nu = {self.nu}; it must be in (-1, 0.5], for example 0.3")
         strengths = ("yield_strength", "hardness", "brinell", "bearing_limit")
@@ -93,8 +94,8 @@ class Material:
                 f"material {self.name!r}: expansion = {self.expansion} 1/K; no solid reaches {MAX_EXPANSION:g} 1/K, "
                 "steel has 12e-6 1/K"
             )
-        if self.friction is not None and not (isfinite(self.friction) and self.friction >= 0):
-            raise InputError(f"material {self.name!r}: friction = {self.friction}; it must be 0 or more, or left out")
+        if self.friction is not None:
+            number(self.friction, f"material {self.name!r}: friction", least=0, greatest=MOST_FRICTION, ends="[]")
         if self.hardness is None and self.yield_strength is not None:
             object.__setattr__(self, "hardness", 2.8 * self.yield_strength)
         if self.hardness is None and self.brinell is not None:

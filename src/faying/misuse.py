@@ -10,6 +10,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from numpy.typing import ArrayLike
 
+from faying import checks
 from faying.errors import InputError
 from faying.typing import Array
 
@@ -50,6 +51,8 @@ def _checked(function: Any, name: str) -> Any:
         for key, value in given.items():
             if key in hints and not matches(value, hints[key]):
                 raise InputError(f"{name}: {key} = {shortened(value)}; give {described(hints[key])}")
+            if isinstance(value, str | Path) and Path in (hints.get(key), *get_args(hints.get(key))):
+                checks.path(value, f"{name}: {key}")
         return function(*args, **kwargs)
 
     return call
@@ -112,7 +115,7 @@ def matches(value: object, hint: Any) -> bool:
     if not isinstance(kind, type) or (getattr(kind, "_is_protocol", False) and not _is_abstract(kind)):
         return True
     if kind.__module__ == "numpy":
-        return _is_array(value)
+        return _is_array(value, "biuf" if inner == get_args(Array) else "biufc")
     if issubclass(kind, tuple) and hasattr(kind, "_fields") and isinstance(value, tuple | list):
         return len(value) == len(kind._fields)  # a plain tuple will do for a named one
     if not isinstance(value, kind):
@@ -138,14 +141,14 @@ def _is_number(value: object, hint: type) -> bool:
     return isinstance(value, int | np.integer if hint is int else int | float | np.integer | np.floating)
 
 
-def _is_array(value: object) -> bool:
-    """Whether a value is an array of numbers, or can be made one."""
+def _is_array(value: object, kinds: str = "biufc") -> bool:
+    """Whether a value is an array of numbers of these kinds (NumPy's letters), or can be made one."""
     import numpy as np
 
     if value is None or isinstance(value, str | bytes | bool | Mapping | Path):
         return False
     try:
-        return np.asarray(value).dtype.kind in "biufc"
+        return np.asarray(value).dtype.kind in kinds
     except (TypeError, ValueError):
         return False
 
@@ -220,7 +223,7 @@ def numbers(value: Any, name: str, *shape: int | str) -> Array:
     import numpy as np
 
     words = ", ".join(map(str, shape))
-    if not _is_array(value) or np.iscomplexobj(value):
+    if not _is_array(value, "biuf"):
         raise InputError(f"{name} = {shortened(value)}; give an array of numbers of the shape ({words})")
     out = np.asarray(value, dtype=float)
     if out.ndim != len(shape) or any(isinstance(b, int) and a != b for a, b in zip(out.shape, shape, strict=True)):

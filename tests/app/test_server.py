@@ -3,6 +3,8 @@
 import http.client
 import json
 import socket
+from contextlib import ExitStack
+from types import SimpleNamespace
 from urllib.parse import quote
 
 import pytest
@@ -255,13 +257,40 @@ def test_a_port_that_is_taken_says_so(server, tmp_path):
         Server(Project.at(tmp_path), server.server_port)
 
 
-def test_a_study_is_not_replaced_by_an_upload_unasked(server, tmp_path):
-    (tmp_path / "study.toml").write_text("a = 1")
-    _, found = ask(server, "api/file?name=study.toml", "POST", b"b = 2")
+@pytest.mark.parametrize("name", ["study.toml", "scan.csv"])
+def test_no_file_is_replaced_by_an_upload_unasked(server, tmp_path, name):
+    (tmp_path / name).write_text("a = 1")
+    _, found = ask(server, f"api/file?name={name}", "POST", b"b = 2")
     assert "is there already" in json.loads(found)["fault"]
-    assert (tmp_path / "study.toml").read_text() == "a = 1"
-    ask(server, "api/file?name=study.toml&replace=yes", "POST", b"b = 2")
-    assert (tmp_path / "study.toml").read_text() == "b = 2"
+    assert (tmp_path / name).read_text() == "a = 1"
+    ask(server, f"api/file?name={name}&replace=yes", "POST", b"b = 2")
+    assert (tmp_path / name).read_text() == "b = 2"
+
+
+def test_a_file_is_not_replaced_while_a_job_reads_it(server, tmp_path, monkeypatch):
+    (tmp_path / "scan.csv").write_text("a = 1")
+    monkeypatch.setattr(server.session, "job", SimpleNamespace(running=True, command="faying run", cancel=lambda: None))
+    _, found = ask(server, "api/file?name=scan.csv&replace=yes", "POST", b"b = 2")
+    assert "faying run still runs" in json.loads(found)["fault"]
+    assert (tmp_path / "scan.csv").read_text() == "a = 1"
+
+
+def test_half_an_address_is_refused(server, capfd):
+    with socket.create_connection(("127.0.0.1", server.server_port), timeout=10) as line:
+        line.sendall(f"GET http://[::1/x HTTP/1.1\r\nHost: 127.0.0.1:{server.server_port}\r\n\r\n".encode())
+        assert line.recv(100).startswith(b"HTTP/1.1 400")
+    assert "Traceback" not in capfd.readouterr().err
+
+
+def test_two_hundred_connections_at_once(server):
+    with ExitStack() as stack:
+        lines = [
+            stack.enter_context(socket.create_connection(("127.0.0.1", server.server_port), timeout=10))
+            for _ in range(200)
+        ]
+        for line in lines:
+            line.sendall(f"GET /{server.token}/ HTTP/1.1\r\nHost: 127.0.0.1:{server.server_port}\r\n\r\n".encode())
+        assert all(line.recv(15) == b"HTTP/1.1 200 OK" for line in lines)
 
 
 @pytest.mark.parametrize(

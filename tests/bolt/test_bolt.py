@@ -51,7 +51,7 @@ def test_torque_by_friction(d, pitch, friction, force, torque):
 def test_torque_needs_all_it_takes():
     for given, text in (
         ({"torque": -1.0, "nut_factor": 0.2}, "must both be positive"),
-        ({"nut_factor": 20.0}, "must be between 0.02 and 1"),
+        ({"nut_factor": 20.0}, "must be at least 0.02 and at most 1"),
         ({}, "a torque gives no preload by itself"),
         ({"pitch": 1e-3, "thread_friction": 0.1}, "a torque gives no preload by itself"),
     ):

@@ -200,3 +200,13 @@ def test_options_of_law_that_do_not_apply_are_faults(options, said, capsys):
         main(["law", "--material", "45 steel", *options])
     assert stop.value.code == 1
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a shell of Unix closes the stream")
+@pytest.mark.parametrize("closed", ["2>&-", ">&- 2>&- <&-"])
+def test_a_run_whose_streams_are_closed_ends_as_any_other(closed, tmp_path):
+    shutil.copytree(EXAMPLES / "two-blocks", tmp_path / "blocks")
+    words = f"{sys.executable} -m faying run blocks/study.toml --no-files {closed}"
+    done = subprocess.run(words, shell=True, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert done.returncode == 0
+    assert ("Hz" in done.stdout) == (">&- 2" not in closed)

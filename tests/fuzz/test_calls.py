@@ -30,6 +30,11 @@ JUNK = {
     "array of no dimension": np.array(1.0),
     "path": Path("absent.file"),
     "complex": 1j,
+    "complex array": np.array([1j, 2.0]),
+    "array of text": np.array(["a"]),
+    "text of no dimension": np.array("a"),
+    "long name": "x" * 300,
+    "zero byte": "a\0b",
 }
 
 

@@ -278,7 +278,7 @@ def test_progress_reports_and_its_exception_stops_the_run(rough):
         ({"spacing": (1.0, 1.0, 1.0)}, "give 2 numbers in m, or one for all"),
         ({"E_star": -1.0}, "E_star = -1 Pa; it must be positive"),
         ({"nu": 0.6}, "nu = 0.6; it must be above -1 and at most 0.5"),
-        ({"hardness": 0.0}, "hardness = 0.0 Pa; it must be positive"),
+        ({"hardness": 0.0}, "hardness = 0 Pa; it must be positive"),
         ({"tol": 0.0}, "tol = 0; it must be between 0 and 1"),
         ({"pressure": -1.0}, "pressure = -1 Pa; it must be 0 or more"),
         ({"pressure": np.nan}, "it must be 0 or more"),

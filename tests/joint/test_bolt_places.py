@@ -104,11 +104,13 @@ def test_a_seat_that_nothing_tells_is_asked_for():
     assert bolt(diameter=5e-3, washers=(washer,)).fitted(rings()).ring == pytest.approx((9e-3, 18e-3))
 
 
-def test_an_axis_beside_its_hole_is_refused():
+@pytest.mark.parametrize("away", [5, 10])  # mm: the head of M8 is 12 mm wide
+def test_an_axis_beside_its_hole_is_refused(away):
     with pytest.raises(
-        faying.InputError, match=r"its axis is 5 mm away from the centre of the hole of 9 mm in 'upper.top', at \(30"
+        faying.InputError,
+        match=rf"its axis is {away} mm away from the centre of the hole of 9 mm in 'upper.top', at \(30",
     ):
-        bolt(at=tuple(CENTRE + np.array([5e-3, 0, 0]))).fitted(rings())
+        bolt(at=tuple(CENTRE + np.array([away * 1e-3, 0, 0]))).fitted(rings())
     assert bolt(at=tuple(CENTRE + np.array([0.5e-3, 0, 0]))).fitted(rings()).length == pytest.approx(10e-3)
 
 

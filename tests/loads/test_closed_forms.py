@@ -288,8 +288,8 @@ def test_two_displacements_of_one_face_are_refused(held):
 def test_ranges_of_factors_and_temperatures():
     for given, text in (
         ({"combine": {"a": 1001.0}}, r"combine takes 'a' 1001 times; give a factor from -1000 to 1000"),
-        ({"temperature": {"p0": "-1001 K"}}, r"temperature of 'p0' changes by -1001 K; give a change since"),
-        ({"temperature": {"p0": 2001.0}}, "-1000 to 2000 K"),
+        ({"temperature": {"p0": "-474 K"}}, r"temperature of 'p0' changes by -474 K; give a change since"),
+        ({"temperature": {"p0": 2001.0}}, "-473 to 2000 K"),
     ):
         with pytest.raises(faying.InputError, match=text):
             faying.Load("far", **given)
@@ -299,6 +299,8 @@ def test_a_load_that_nothing_holds_is_refused(free):
     _, state = free
     with pytest.raises(faying.InputError, match=r"load 'a' does not balance: forces of \(100, 0, 0\) N"):
         faying.load_cases(state, [faying.Load("a", forces=[faying.Force("p1.right", force=(100, 0, 0))])])
+    with pytest.raises(faying.InputError, match=r"forces of \(0, 0, 0\) N and moments of \(0, 5, 0\) N m"):
+        faying.load_cases(state, [faying.Load("a", forces=[faying.Force("p1.right", moment=(0, 5, 0))])])
     with pytest.raises(faying.InputError, match="no rigid support holds"):
         faying.load_cases(state, [faying.Load("m", displacements=[faying.Displacement("p1.right", (1e-6, 0, 0))])])
     with pytest.raises(faying.InputError, match="neither a part nor a bolt; give one of 'p0', 'p1', 'b'"):

@@ -31,20 +31,28 @@ FACES = 'faces = ["FACE_A", "FACE_B"]\n'
 MATERIAL = '\n[material.odd]\nE = "{}"\nnu = 0.3\ndensity = "{}"\nfriction = {}\n'
 TEST = '\n[test]\nfrequencies = [["{}"], ["100 Hz"]]\npoints = [["0 mm", "0 mm", "0 mm"]]\n'
 RESPONSE = '\n[response]\nfrom = "10 Hz"\nto = "{}"\nstructural_loss = {}\n'
+WRENCH = 'torque = "9 N m"\ndiameter = "8 mm"\npitch = "1.25 mm"\nthread_friction = 1.0\nhead_friction = 0.12'
 END = 'point = ["0 mm", "0 mm", "0 mm"]\ndirection = {}\n'
 
 
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (changed(FACES, FACES + "friction = 9e18\n"), "friction = 9e+18 should be a plain number from 0 to 10"),
+        (changed(FACES, FACES + "friction = 9e18\n"), "friction = 9e+18 should be a plain number from 0 to 2"),
         (changed(FACES, FACES + "friction = -0.1\n"), "friction = -0.1 should be a plain number from 0"),
         (TEXT + MATERIAL.format("200 GPa", "7800 kg/m^3", "1e3"), "friction = 1000 should be"),
+        (TEXT + MATERIAL.format("1 mPa", "7800 kg/m^3", "0.2"), '"1 mPa" is beyond what a bolted structure has, 1 kPa'),
         (TEXT + MATERIAL.format("200 EPa", "7800 kg/m^3", "0.2"), '"200 EPa" is beyond what a bolted structure has'),
         (TEXT + MATERIAL.format("200 GPa", "7800 Gg/m^3", "0.2"), '"7800 Gg/m^3" is beyond'),
         (changed('"1 kN"', '"1e-300 kN"'), '"1e-300 kN" is beyond what a bolted structure has, 1 uN to 10 GN'),
         (changed('"1 kN"', '"1e9 kN"'), '"1e9 kN" is beyond'),
         (TEXT + TEST.format("1e308 Hz"), 'frequencies = "1e308 Hz" is beyond'),
+        (TEXT + TEST.format('9 kHz", "3 Hz').replace('"100', '"9 Hz", "100'), "3 Hz stands after 9000 Hz"),
+        (TEXT + TEST.format("1 kHz") + "threshold = 1e30\n", "threshold = 1e+30 should be a plain number from 0 to 1"),
+        (TEXT + '[[mass]]\nface = "END_A"\nmass = "1e9 kg"\n', '"1e9 kg" is beyond'),
+        (TEXT + '[[load]]\nname = "cold"\ntemperature = {block_a = "-500 K"}\n', "changes by -500 K"),
+        (changed("count = 5", 'count = 5\nlevels = ["1e9 m/s^2"]'), '"1e9 m/s^2" is beyond'),
+        (changed('preload = ["1 kN", "3 kN"]', WRENCH), "friction = 1 should be a plain number from 0.02 to 0.8"),
         (TEXT + RESPONSE.format("1 kHz", "1e12"), "structural_loss = 1e+12 should be a plain number from 0 to 2"),
         (
             TEXT + RESPONSE.format("1 kHz", "0.01") + "[[response.input]]\n" + END.format("[1e-300, 0, 0]"),

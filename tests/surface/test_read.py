@@ -361,7 +361,7 @@ def test_a_matrix_of_heights_needs_its_size(tmp_path, given):
     z = np.arange(40 * 56, dtype=float).reshape(40, 56) % 37
     path = tmp_path / "matrix.txt"
     np.savetxt(path, z, delimiter="\t")
-    with pytest.raises(InputError, match=r"matrix of heights.*size or spacing in metres and z_unit"):
+    with pytest.raises(InputError, match=r"matrix of heights.*give size or spacing.*and z_unit"):
         read_scan(path)
     scan = read_scan(path, z_unit="nm", **given)
     assert scan.spacing == pytest.approx((1e-6, 2e-6))

@@ -7,8 +7,11 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from faying.errors import FayingError
+from faying.sweeps.parallel import each
 from tests.fuzz.kills import of_session
 
 ROOT = Path(__file__).parents[2]
@@ -49,3 +52,15 @@ def test_no_worker_outlives_its_parent_by_two_seconds(tmp_path, number):
     for one in left:
         os.kill(one, signal.SIGKILL)
     assert not left
+
+
+def killed(indices):
+    """A chunk of a sweep whose second process is killed, as the kernel does where memory ends."""
+    if indices[0] == 1:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"x": np.zeros(len(indices))}
+
+
+def test_a_worker_that_is_killed_is_a_fault_in_words():
+    with pytest.raises(FayingError, match="one of 2 processes was ended from outside, often for lack of memory"):
+        list(each(killed, [[0], [1], [2]], 2, None))

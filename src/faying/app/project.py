@@ -110,10 +110,11 @@ class Project:
     def receive(self, name: str, source: BufferedIOBase, size: int, *, replace: bool = False) -> Path:
         """Write `size` bytes of a stream into the folder; the file appears complete or not at all.
 
-        The study is replaced only where that is wanted: it may hold an hour's work. Raises InputError otherwise.
+        A file that is there is replaced only where that is wanted: it may be an hour's work. Raises InputError
+        otherwise.
         """
         path = self.file(name)
-        if name == self.study_name and path.is_file() and not replace:
+        if path.is_file() and not replace:
             raise InputError(f"{name} is there already; say that it is to be replaced, or give the file another name")
 
         def write(temporary: Path) -> None:

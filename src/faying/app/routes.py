@@ -86,9 +86,16 @@ class Session:
             self.runs.keep()
         return self.project.listed() | {"job": job, "version": __version__}
 
+    def _check_idle(self) -> None:
+        """Raise InputError while a job runs, which reads the files of the folder."""
+        if self.job is not None and self.job.running:
+            raise InputError(f"{self.job.command} still runs; cancel it or wait")
+
     def upload(self, request: Request) -> dict[str, Any]:
         """Take a file into the folder."""
         name, replace = request.given("name"), request.query.get("replace") == "yes"
+        if replace:
+            self._check_idle()
         return {"name": self.project.receive(name, request.body, request.size, replace=replace).name}
 
     def save(self, request: Request) -> dict[str, Any]:
@@ -187,8 +194,7 @@ class Session:
         if what not in JOBS:
             raise InputError(f"{what!r} is none of {', '.join(JOBS)}")
         with self._lock:
-            if self.job is not None and self.job.running:
-                raise InputError(f"{self.job.command} still runs; cancel it or wait")
+            self._check_idle()
             if self.project.text() is None:
                 raise InputError("there is no study yet")
             if JOBS[what]:

@@ -47,6 +47,7 @@ class Server(ThreadingHTTPServer):
     """
 
     daemon_threads = True
+    request_queue_size = 256  # connections that wait: a browser opens six to a page, several pages at once many
 
     def __init__(self, project: Project, port: int = 0) -> None:
         self.session, self.token = Session(project), secrets.token_urlsafe(24)
@@ -84,11 +85,15 @@ class _Handler(BaseHTTPRequestHandler):
         """Say nothing: the terminal belongs to the user."""
 
     def _serve(self) -> None:
-        refusal = self._refusal()
+        try:
+            url = urlsplit(self.path)
+        except ValueError as fault:  # such as half of an address of IPv6
+            self._refuse(400, f"the address is not one ({fault})")
+            return
+        refusal = self._refusal(url.path)
         if refusal is not None:
             self._refuse(*refusal)
             return
-        url = urlsplit(self.path)
         path = url.path.removeprefix(f"/{self.server.token}/")
         size = int(self.headers.get("Content-Length") or 0)
         request = Request(query=dict(parse_qsl(url.query, keep_blank_values=True)), body=self.rfile, size=size)
@@ -108,7 +113,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     do_GET = do_POST = do_PUT = do_DELETE = _serve
 
-    def _refusal(self) -> tuple[int, str] | None:
+    def _refusal(self, path: str) -> tuple[int, str] | None:
         """Status and reason where a request is not one of the page's own; None where it is."""
         if f"http://{self.headers.get('Host', '')}" not in self.server.origins:
             return 403, "the Host of the request is not this server"
@@ -117,10 +122,10 @@ class _Handler(BaseHTTPRequestHandler):
             return 403, "the request comes from another page"
         if self.headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin"):
             return 403, "the request comes from another page"
-        token = urlsplit(self.path).path.split("/")[1:2]
+        token = path.split("/")[1:2]
         if not token or not hmac.compare_digest(token[0].encode(), self.server.token.encode()):
             return 403, "the address lacks the token; open the address that faying app printed"
-        if urlsplit(self.path).path == f"/{self.server.token}":
+        if path == f"/{self.server.token}":
             return 404, "the address ends in /"
         if "Transfer-Encoding" in self.headers:
             return 411, "send a Content-Length"

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from faying import netcdf
+from faying.apart import in_processes
 from faying.asperity_fe.drive import AsperityCase
 from faying.asperity_fe.result import AsperityResult
 from faying.errors import FayingError, InputError
@@ -30,7 +31,7 @@ def solve_cases(
     processes: as many as there are cores where not given; each uses one thread. progress: called with the number of
     cases done. A case that fails gives its error in place of a result.
     """
-    from joblib import Parallel, delayed, parallel_config
+    from joblib import parallel_config
 
     if not cases:
         raise InputError("no cases were given; the table needs at least one row")
@@ -39,8 +40,7 @@ def solve_cases(
         raise InputError(f"processes = {processes}; at least 1 is needed")
     found: dict[int, AsperityResult | FayingError] = {}
     with parallel_config(backend="loky", inner_max_num_threads=1):
-        pool = Parallel(n_jobs=count, return_as="generator_unordered")
-        for number, result in pool(delayed(_solved)(k, case) for k, case in enumerate(cases)):
+        for number, result in in_processes(_solved, list(enumerate(cases)), count):
             found[number] = result
             if progress is not None:
                 progress(len(found))

@@ -132,7 +132,9 @@ def _expected(case: AsperityCase, greatest: float) -> tuple[float, float]:
     """Contact radius to mesh for and displacement [m] at the greatest displacement or force asked for."""
     cap, R, h_a = case.cap, case.R, case.h_a
     if case.force is None and greatest > h_a:
-        raise InputError(f"displacement {greatest} m is more than the height of the cap, {h_a} m; stay at or below h_a")
+        raise InputError(
+            f"displacement {greatest:.6g} m is more than the height h_a of the cap, {h_a:.6g} m; give less"
+        )
     soft = [m for m in (cap, case.substrate, case.layer) if m is not None and m.hardness is not None and not m.is_rigid]
     weakest = min(soft, key=lambda m: m.hardness or np.inf) if soft else None
     E_star = ContactPair(cap, RIGID).E_star
@@ -142,7 +144,7 @@ def _expected(case: AsperityCase, greatest: float) -> tuple[float, float]:
         top = radius**2 / (1.5 * R)  # between Hertz's a^2/R and the truncated sphere's a^2/(2R)
         if top > h_a:
             raise InputError(
-                f"force {greatest} N would press the cap by about {top:.3g} m, more than its height {h_a} m; give less"
+                f"force {greatest:.6g} N would press the cap {top:.3g} m, more than its height {h_a:.6g} m; give less"
             )
         return radius, top
     radius = expected_radius(R, h_a, greatest, E_star, hardness, 0.454 + 0.41 * (weakest or cap).nu)
@@ -193,7 +195,7 @@ class _Run:
                     goal = max(sqrt(here) + way * stride, 0.0) ** 2
                     if goal > self.model.h_a:
                         raise NotConverged(
-                            f"force {target} N is not reached while the cap is being pressed down to its base"
+                            f"force {target:.6g} N is not reached while the cap is being pressed down to its base"
                         )
                     force = self._try(goal)
                     if way * (force - target) > FORCE_TOLERANCE * scale:
@@ -336,7 +338,7 @@ def _check_shape(case: AsperityCase) -> None:
         raise InputError("the cap is rigid; it must be deformable, only the substrate may be RIGID")
     if (layer is None) != (thickness == 0) or not 0 <= thickness < inf:
         raise InputError(
-            f"layer {layer.name if layer else None!r} with layer_thickness = {thickness} m; give both, or neither"
+            f"layer {layer.name if layer else None!r} with layer_thickness = {thickness:.6g} m; give both, or neither"
         )
     number(case.hardening, "hardening", least=0, greatest=1, ends="[)")
     if case.elements < 4 or (case.steps is not None and case.steps < 1):
@@ -345,6 +347,6 @@ def _check_shape(case: AsperityCase) -> None:
         isfinite(case.domain) and case.domain > 2 * case.base and case.domain > 2 * thickness
     ):
         raise InputError(
-            f"domain = {case.domain} m; it must be more than twice the cap's base radius {case.base:.4g} m and the "
+            f"domain = {case.domain:.6g} m; it must be more than twice the cap's base radius {case.base:.4g} m and the "
             "layer"
         )

@@ -27,6 +27,8 @@ from faying.units import show
 # proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
 ACROSS_FLATS, HEAD_HEIGHT, NUT_HEIGHT = 1.5, 0.64, 0.85
 CLEARANCE = 1.1  # diameter of a clearance hole over that of its bolt (ISO 273, medium)
+BOLT_FRICTION = (0.02, 0.8)  # in the thread and under the head: soft films, and steel that galls
+NUT_FACTOR = (0.02, 1.0)  # about 0.2 for dry steel
 AXIS_OFFSET = 0.2  # of a hole's radius: farther from its centre, an axis misses it
 HEXAGON = 3**0.5 / 2  # area of a hexagon over the square of its width across flats
 
@@ -49,16 +51,20 @@ def torque_to_preload(
     if torque <= 0 or diameter <= 0:
         raise InputError(f"torque {torque:g} N m and diameter {diameter:g} m must both be positive")
     if nut_factor is not None:
-        if not 0.02 <= nut_factor <= 1:
-            raise InputError(f"nut_factor = {nut_factor:g}: it must be between 0.02 and 1, about 0.2 for dry steel")
-        return torque / (nut_factor * diameter)
+        return torque / (_between(nut_factor, "nut_factor", NUT_FACTOR) * diameter)
     if pitch is None or thread_friction is None or head_friction is None:
         raise InputError(
             "a torque gives no preload by itself; add nut_factor (about 0.2 for dry steel), or pitch, "
             "thread_friction and head_friction"
         )
+    for name, friction in (("thread_friction", thread_friction), ("head_friction", head_friction)):
+        _between(friction, name, BOLT_FRICTION)
     flank = (diameter - 0.6495 * pitch) / 2 * thread_friction / np.cos(np.pi / 6)
     return float(torque / (pitch / (2 * pi) + flank + 0.65 * diameter * head_friction))
+
+
+def _between(value: float, name: str, ends: tuple[float, float]) -> float:
+    return number(value, name, least=ends[0], greatest=ends[1], ends="[]")
 
 
 @checked_call
@@ -357,7 +363,9 @@ class Bolt:
                 offset = float(np.linalg.norm(arm - (arm @ axis) * axis))
                 if offset <= AXIS_OFFSET * hole.radius:
                     return hole
-                if offset <= (2 if 2 * hole.radius <= self._covered else 1) * hole.radius:
+                # the hole of another bolt is farther away than the width of a head, since two heads do not overlap
+                head = self._covered if self._covered < np.inf else 2 * hole.radius
+                if offset <= (head if 2 * hole.radius <= head else hole.radius):
                     near.append((offset, hole, face))
         if near:
             offset, hole, face = min(near, key=lambda one: one[0])

@@ -78,6 +78,17 @@ def _stop(*_: object) -> None:
     raise KeyboardInterrupt
 
 
+def _open_streams() -> None:
+    """Open what a caller has closed of stdin, stdout and stderr: the next file would get its number, and be written."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, "w" if number else "r", closefd=False))  # noqa: SIM115  # until the end
+
+
 def _share_cores() -> None:
     """Leave the cores to PARDISO, whose threads pay; those of OpenBLAS wait for each other on blocks of few columns.
 
@@ -92,6 +103,7 @@ def main(argv: list[str] | None = None) -> None:
     """Entry point of the command `faying`. Exit codes: 0 done, 1 failed or stopped, 2 wrong usage."""
     from faying.errors import FayingError
 
+    _open_streams()
     _share_cores()
     # kill, and a batch system's time limit, clear up as Ctrl-C does
     alone = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
@@ -102,8 +114,7 @@ def main(argv: list[str] | None = None) -> None:
             signal.signal(hung_up, _stop)
     try:
         code: Any = cli.main(args=argv, prog_name="faying", standalone_mode=False)
-        if sys.stdout is not None:
-            sys.stdout.flush()
+        sys.stdout.flush()
     except OSError as fault:
         if fault.errno not in FULL:
             raise

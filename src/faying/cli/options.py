@@ -6,11 +6,9 @@ from typing import Any
 
 import click
 
-from faying import units
+from faying import checks, units
 from faying.errors import InputError
 from faying.text import json_text
-
-MAX_NAME = 240  # bytes of the name of a file: file systems hold 255, and what is being written has a longer name
 
 
 class NamedPath(click.Path):
@@ -18,11 +16,10 @@ class NamedPath(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the path."""
-        names = Path(value).parts
-        if not str(value).strip():
-            self.fail("the name is empty; give the path of a file or folder, such as results", param, ctx)
-        if any(len(name.encode(errors="surrogateescape")) > MAX_NAME for name in names):
-            self.fail(f"a name of more than {MAX_NAME} bytes; give a shorter one", param, ctx)
+        try:
+            checks.path(value, self.name)
+        except InputError as fault:
+            self.fail(str(fault), param, ctx)
         return super().convert(value, param, ctx)
 
 

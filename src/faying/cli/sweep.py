@@ -76,6 +76,8 @@ def command(
         click.echo(f"{mode:4d} {low:9.2f} Hz {high:9.2f} Hz")
     for text, count in done.reasons.items():
         click.echo(f"note: {count} point{'s have' if count > 1 else ' has'} no answer: {text}")
+    for key in done.unchanged_by():
+        click.echo(f"note: {key} changes no answer by more than the tolerance: nothing in this study depends on it")
     if summary["beyond_law"]:
         click.echo(
             f"note: {summary['beyond_law']} of the points press more than a tenth of the contact above the end of the "

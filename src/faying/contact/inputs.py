@@ -147,8 +147,8 @@ class SurfaceInputs(FractalSurface):
         D, gamma, side = number(D, "D"), number(gamma, "gamma"), sqrt(scan_area)
         if not (2 < D < 3 and 0 < shortest < side and gamma > 1):
             raise InputError(
-                f"D = {D}, G = {G} m, scan_area = {scan_area} m2, shortest = {shortest} m, gamma = {gamma}; need D "
-                "between 2 and 3, G positive, gamma above 1 and the shortest wave below the side of the scan"
+                f"D = {D}, G = {G:.6g} m, scan_area = {scan_area:.6g} m2, shortest = {shortest:.6g} m, gamma = "
+                f"{gamma}; need D between 2 and 3, G positive, gamma above 1 and the shortest below the side"
             )
         length = side / gamma ** np.arange(int(log(side / shortest) / log(gamma)) + 1)
         variance = G ** (2 * D - 4) * log(gamma) * length ** (6 - 2 * D) / 2

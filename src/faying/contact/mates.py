@@ -123,7 +123,7 @@ class Mates(Summary):
         if not 2 < dimension < 3:
             raise InputError(f"D = {dimension}: the dimension of a surface is between 2 and 3, for example 2.4")
         if roughness <= 0:
-            raise InputError(f"G = {roughness} m; it must be positive")
+            raise InputError(f"G = {roughness:.6g} m; it must be positive")
         stated = GIVEN
         if of == ONE:
             stated = f"from G {show(roughness, 'm')} of one face, the other alike and unrelated"

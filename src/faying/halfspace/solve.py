@@ -383,7 +383,7 @@ def _checked_hardness(hardness: float | ArrayLike | None, shape: tuple[int, ...]
     if given.shape not in ((), shape):
         raise InputError(f"hardness of shape {given.shape}; give one number, or one for each point of the map {shape}")
     if not np.all(np.isfinite(given) & (given > 0)):
-        raise InputError(f"hardness = {given.min()} Pa; it must be positive, or None for an elastic contact")
+        raise InputError(f"hardness = {given.min():.6g} Pa; it must be positive, or None for an elastic contact")
     return float(given) if given.ndim == 0 else _frozen(given.copy())
 
 

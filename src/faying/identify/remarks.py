@@ -14,6 +14,7 @@ from faying.units import show
 
 END, PRESSED = 0.05, 0.25  # share of the prior at an end, and of the posterior that makes it worth a note
 MIXED = 0.3  # correlation with the start of a stage above which the samples have not mixed
+CLEARLY = 1.05  # ratio of two errors from which one is the greater as they are printed
 SHOWN = 3  # reasons that are listed
 
 
@@ -88,9 +89,9 @@ def of_surrogate(missed: float, claimed: float, scatter: float, *, rough: bool) 
             f"{claimed:.2%}: the intervals may be too narrow or in the wrong place. Narrower priors help."
         )
         yield Note(code="surrogate-rough", text=text)
-    if claimed > scatter:
+    if claimed > CLEARLY * scatter:
         text = (
-            f"The surrogate's error, {claimed:.2%}, is greater than the scatter of the test, {scatter:.2%}: the "
-            "intervals are wider than the test would allow. More evaluations or narrower priors help."
+            f"The surrogate's error, {100 * claimed:.3g} %, is greater than that of the test, {100 * scatter:.3g} %: "
+            "the intervals are wider than the test would allow. More evaluations or narrower priors help."
         )
         yield Note(code="surrogate-wide", text=text)

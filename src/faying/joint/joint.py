@@ -17,6 +17,7 @@ from faying.form.form import Form
 from faying.form.waviness import LaidWaves, Waviness
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
+from faying.materials import MOST_FRICTION
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.typing import Array, Mask
@@ -129,9 +130,9 @@ class Joint:
 
 def check_friction(what: str, friction: float | None) -> None:
     """Raise InputError for what is not a coefficient of friction."""
-    if friction is not None and not 0 <= friction < 10:
+    if friction is not None and not 0 <= friction <= MOST_FRICTION:
         raise InputError(
-            f"{what}: friction {friction:g} is not a coefficient of friction; give one such as "
+            f"{what}: friction {friction:g} is not a coefficient of friction, 0 to {MOST_FRICTION:g}; give one such as "
             "0.2, or leave it out for a joint that sticks"
         )
 

@@ -211,9 +211,13 @@ def check_supported(structure: BoltedStructure, name: str, force: Array, scale: 
     rigid = np.linalg.qr(structure.rigid)[0]
     net = float(np.linalg.norm(rigid.T @ force))
     if net > BALANCED * scale:
-        total = force.reshape(-1, 3).sum(axis=0)
-        total = np.where(np.abs(total) > BALANCED * scale, total, 0.0)
+        forces, arms = force.reshape(-1, 3), structure.mesh.points - structure.mesh.points.mean(axis=0)
+        total, moment = forces.sum(axis=0), np.cross(arms, forces).sum(axis=0)
+        left = [
+            ", ".join(f"{one if abs(one) > BALANCED * least else 0.0:.4g}" for one in sums)
+            for sums, least in ((total, scale), (moment, scale * np.ptp(arms, axis=0).max()))
+        ]
         raise InputError(
-            f"load {name!r} does not balance: forces of ({', '.join(f'{one:.4g}' for one in total)}) N or their moment "
-            "are left over, and nothing holds the structure against them; add a [[support]], or loads that balance"
+            f"load {name!r} does not balance: forces of ({left[0]}) N and moments of ({left[1]}) N m about the "
+            "middle are left over, and nothing holds the structure against them; add a [[support]], or loads in balance"
         )

@@ -1,6 +1,6 @@
-"""Frequency and damping against amplitude from a free decay, by band-pass and Hilbert transform; measured points."""
+"""Frequency and damping against amplitude from a free decay of one to three modes; measured points."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, Self
 
@@ -10,16 +10,18 @@ from faying.checks import number, whole
 from faying.columns import read_columns
 from faying.errors import InputError, ReadError
 from faying.files import write_text
+from faying.measured.exponentials import Track, widened
 from faying.measured.frf import FRF, QUANTITIES
 from faying.misuse import checked_call
 from faying.style import Summary
 from faying.typing import Array, Complex
 
 EDGE = 0.25  # of the band, on both sides, over which the filter rises
-RINGING = 3.0  # over the width of an edge: how long the ends of the record are felt [-]
+RINGING = 3.2  # over the width of an edge: how long the ends of the record are felt [-]
 CYCLES = 20  # least length of the stretch that gives one point
-SCATTER = 0.05  # of ln amplitude about a stretch's parabola, beyond which it is noise or more than one mode
+INDEPENDENT = 8  # least samples at the rate of the band in a stretch: three unknowns, and freedom to tell noise
 MIN_POINTS = 5  # points without which there is no curve
+STANDARD_ERRORS = 3.0  # in a damping, at least: a point knows it to a third
 Motion = Literal["displacement", "velocity", "acceleration"]
 MOTIONS: dict[Motion, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}  # derivatives of the displacement
 MOTION_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"}
@@ -153,13 +155,13 @@ def ring_down(
     cycles: int = CYCLES,
     start: float = 0.0,
 ) -> MeasuredBackbone:
-    """Frequency and damping of one mode along a free decay.
+    """Frequency and damping of one mode along a free decay of one to three modes.
 
-    The record is filtered by a band with smooth edges and without its negative frequencies (so that nothing is shifted
-    in phase): the analytic signal, whose size is the amplitude and whose angle is the phase. Stretches of `cycles`
-    periods each get a parabola of ln amplitude and of phase by least squares; their slopes are the decay and the
-    frequency. No peak is read, in time or frequency. What lies within three over the width of the filter's edges from
-    an end of the record is discarded: there the filter rings.
+    The record is filtered by a band with smooth edges and without its negative frequencies, so that nothing is shifted
+    in phase. Stretches of at least `cycles` periods, each a fourth of its length after the last, get one to three
+    exponentials by matrix pencil and least squares; the mode that is the largest at the start is followed. Number of
+    exponentials and length of the stretches are those that describe the record by the fewest parameters. What lies
+    within 3.2 over the width of the filter's edges from an end of the record is discarded: there the filter rings.
 
     damping is that of a Backbone, the loss in a cycle over 2 pi w^2 q^2, with q the displacement amplitude times the
     root of the modal mass and w the circular frequency. A loss D lowers the action w q^2/2 by D/(w T) in a period T
@@ -169,17 +171,22 @@ def ring_down(
     Args:
         signal: (n,), in the SI unit of `quantity`, free from `start` on.
         sampling_rate: samples per second [1/s].
-        band: [Hz] in which this mode is alone; its width should be ten times the decay rate or more.
+        band: [Hz] with this mode and at most two smaller ones; its width should be ten times the decay rate or more.
         quantity: of the signal.
-        cycles: in a stretch: more average the noise, fewer follow a quick change.
+        cycles: least of a stretch: more average the noise, fewer follow a quick change.
         start: of the free decay [s] in the record.
 
+    Returns:
+        Points up to where the damping is not known to a third of itself. The errors contain the noise and the scatter
+        from stretch to stretch.
+
     Raises:
-        InputError: a record that is too short for the band, a band outside it, or one in which noise or other modes
-            leave no curve.
+        InputError: a record that is too short for the band, a band outside it, an amplitude that rises, or noise or
+            modes that this record cannot separate.
 
     Source:
-        Feldman 1994, doi:10.1006/mssp.1994.1011 (FREEVIB: the analytic signal of a free decay).
+        Hua and Sarkar 1990, doi:10.1109/29.56027 (matrix pencil); Schwarz 1978, doi:10.1214/aos/1176344136 (the choice
+        of length and number).
     """
     x = np.asarray(signal, dtype=float)
     if quantity not in MOTIONS:
@@ -220,14 +227,16 @@ def ring_down_of_frf(
     Args:
         frf: with evenly spaced lines.
         impulse: of the hit [N s], positive.
-        band: [Hz] in which this mode is alone.
+        band: [Hz] with this mode and at most two smaller ones.
         output, input: which function.
-        cycles: in a stretch.
+        cycles: least of a stretch.
 
     Raises:
         InputError: as `ring_down`.
     """
     number(impulse, "impulse of the hit", "N*s", least=0)
+    whole(output, "output", least=0, greatest=len(frf.outputs) - 1)
+    whole(input, "input", least=0, greatest=len(frf.inputs) - 1)
     _check_band(band, float(frf.frequency[-1]))
     values, step = frf.values[output, input], frf.step
     if not np.all(np.isfinite(values)):
@@ -261,46 +270,54 @@ def _filter(frequency: Array, band: tuple[float, float]) -> Array:
 def _curve(
     analytic: Complex, rate: float, band: tuple[float, float], power: int, cycles: int, start: float
 ) -> MeasuredBackbone:
-    """Slopes of ln amplitude and phase of an analytic signal, stretch by stretch."""
+    """Frequency and damping of the mode that is the largest at the start of an analytic signal."""
     whole(cycles, "cycles", least=1)
-    width = band[1] - band[0]
+    width, middle, given = band[1] - band[0], (band[0] + band[1]) / 2, f"{band[0]:g} to {band[1]:g} Hz"
     cut = int(np.ceil(RINGING / (EDGE * width) * rate))
-    stretch = int(np.ceil(cycles / ((band[0] + band[1]) / 2) * rate)) // 2 * 2 + 1
+    every = max(1, int(rate / width))  # without negative frequencies one sample in 1/width is enough
     free = analytic[cut : len(analytic) - cut]
-    if len(free) < stretch + 2:
+    slow = (free * np.exp(-2j * np.pi * middle / rate * np.arange(len(free))))[::every]
+    shortest = int(np.ceil(max(cycles / middle, INDEPENDENT / width) * rate / every))
+    if len(slow) < shortest + 2:
         raise InputError(
             f"the record of {len(analytic) / rate:.3g} s is too short for a band of {width:g} Hz: {2 * cut / rate:.3g} "
-            f"s are lost at its ends and one stretch takes {stretch / rate:.3g} s; widen the band or record longer"
+            f"s are lost at its ends and one stretch takes {shortest * every / rate:.3g} s; widen the band or record "
+            "longer"
         )
-    size, phase = np.log(np.maximum(np.abs(free), 1e-300)), np.unwrap(np.angle(free))
-    middles = np.arange(stretch // 2, len(free) - stretch // 2, max(1, stretch // 2))
-    t = (np.arange(stretch) - stretch // 2) / rate
-    parabola = np.linalg.pinv(np.stack([np.ones(stretch), t, t * t], axis=1))
-    windows = middles[:, None] + np.arange(stretch) - stretch // 2
-    fits = [np.stack([parabola @ own[row] for row in windows]) for own in (size, phase)]
-    residual = [
-        np.sqrt(np.mean((own[windows] - fit @ np.stack([np.ones(stretch), t, t * t])) ** 2, axis=1))
-        for own, fit in zip((size, phase), fits, strict=True)
-    ]
-    good = residual[0] < SCATTER
-    count = int(np.argmin(good)) if not np.all(good) else len(good)
-    if count < MIN_POINTS:
+    scale = float(np.abs(slow).max()) or 1.0
+    track = Track.follow(slow / scale, shortest, (1 - EDGE) * width * every / rate)
+    points = None if track is None else _points(track, rate / every, middle, power)
+    if points is None or len(points.time) < MIN_POINTS:
         raise InputError(
-            f"{count} stretches of {cycles} cycles have a smooth decay in {band[0]:g} to {band[1]:g} Hz; {MIN_POINTS} "
-            "are needed: noise, or more than one mode in the band; narrow or move it, or take shorter stretches"
+            f"{0 if points is None else len(points.time)} stretches have a damping in {given} that is known to a third "
+            f"of itself; {MIN_POINTS} are needed: noise, or more than one mode in the band that this record cannot "
+            "separate; move the band, start after the hit, or record longer"
         )
-    size_fit, phase_fit = (fit[:count] for fit in fits)
-    omega = phase_fit[:, 1]
-    change = 2 * phase_fit[:, 2] / omega  # d ln omega/dt
-    decay = -(size_fit[:, 1] - (power - 0.5) * change)
-    # noise in the band has so many independent values in a stretch, of which the parabola takes three
-    length = stretch / rate
-    spread = np.sqrt(12 / max(1.0, (1 - EDGE) * width * length - 3)) / length
+    return replace(points, time=start + cut / rate + points.time, acceleration=scale * points.acceleration)
+
+
+def _points(track: Track, rate: float, middle: float, power: int) -> MeasuredBackbone:
+    """Points of a mode's track, up to where its decay is known to a third; time from the start of the track."""
+    growth, omega = track.pole.real * rate, track.pole.imag * rate + 2 * np.pi * middle
+    error, bend_error = track.pole_error * rate, track.bend_error * rate**2
+    change = 2 * track.bend.imag * rate**2 / omega  # d ln omega/dt
+    damping = -(growth - (power - 0.5) * change) / omega
+    damping_error = widened(np.hypot(error, (2 * power - 1) * bend_error / omega) / omega, damping)
+    acceleration = np.abs(track.amplitude) * omega ** (2 - power)
+    rises = track.clear() & (growth > STANDARD_ERRORS * error)
+    if np.any(rises):
+        raise InputError(
+            f"the amplitude at {omega[np.argmax(rises)] / (2 * np.pi):.4g} Hz rises: this is not a free decay, or "
+            "its modes are nearer each other than this record can separate; start after the last hit, or record longer"
+        )
+    good = track.clear() & (damping > STANDARD_ERRORS * damping_error) & np.append(True, np.diff(acceleration) < 0)
+    count = len(good) if np.all(good) else int(np.argmin(good))
+    frequency = omega / (2 * np.pi)
     return MeasuredBackbone(
-        acceleration=np.exp(size_fit[:, 0]) * omega ** (2 - power),
-        frequency=omega / (2 * np.pi),
-        damping=decay / omega,
-        frequency_error=residual[1][:count] * spread / (2 * np.pi),
-        damping_error=residual[0][:count] * spread / omega,
-        time=start + (cut + middles[:count]) / rate,
+        acceleration=acceleration[:count],
+        frequency=frequency[:count],
+        damping=damping[:count],
+        frequency_error=widened(error / (2 * np.pi), frequency)[:count],
+        damping_error=damping_error[:count],
+        time=track.time[:count] / rate,
     )

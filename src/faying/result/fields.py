@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, Union, cast, get
 
 import numpy as np
 
-from faying import netcdf
+from faying import checks, netcdf
 from faying.errors import InputError, ReadError
 from faying.misuse import checked_call, shortened
 from faying.netcdf import Attribute, Group, Variable
@@ -366,9 +366,7 @@ def table_of(group: Group, root: Mapping[str, Variable]) -> "DataFrame":
 
 def read_tree(path: str | Path, kind: str = "file", command: str = "") -> Group:
     """Read the tree of a file; kind: what it should hold. Raises ReadError where it is missing or no NetCDF-4 file."""
-    if not isinstance(path, str | Path):
-        raise InputError(f"path = {shortened(path)}; give the path of a file that Faying has saved")
-    file = Path(path)
+    file = checks.path(path, "path")
     hint = f"; write one with: {command}" if command else ""
     if not file.is_file():
         raise ReadError(f"{file}: no such file{hint}")

@@ -9,7 +9,7 @@ from faying.misuse import checked_call, shortened
 
 MAX_INCREMENTS = 1000  # of one case
 MAX_FACTOR = 1000.0  # on another case, either way
-COLDEST, WARMEST = -1000.0, 2000.0  # K, change of temperature
+COLDEST, WARMEST = -473.0, 2000.0  # K, change of temperature: from 200 degrees Celsius to absolute zero at most
 Vector = tuple[float, float, float]
 NOTHING: Vector = (0.0, 0.0, 0.0)
 

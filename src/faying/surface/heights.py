@@ -166,6 +166,8 @@ def sides_of(scan: AreaHeights | LineHeights) -> tuple[float, ...]:
     return tuple(n * step for n, step in zip(scan.heights.shape, steps_of(scan), strict=True))
 
 
+ASK_UNITS = 'for example xy_unit = "mm" and z_unit = "um" (on the command line --xy-unit mm --z-unit um)'
+ASK_SIZE = 'give size or spacing, for example size = "4 mm" (on the command line --size "4 mm")'
 MIN_POINTS = 16  # each way, that a statistic needs
 
 
@@ -181,6 +183,4 @@ def usable(scan: AreaHeights | LineHeights) -> None:
         share = 100 * (1 - known.size / heights.size)
         raise InputError(f"{scan.source}: {share:.0f} % of the points are missing; at most half may be, crop the scan")
     if np.ptp(known) <= 1e-12 * float(np.abs(known).max()):
-        raise InputError(
-            f"{scan.source}: all heights are the same ({known[0]:.4g} m); there is no roughness to analyse"
-        )
+        raise InputError(f"{scan.source}: all heights are the same; there is no roughness to analyse")

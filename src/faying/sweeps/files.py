@@ -45,6 +45,16 @@ class Sweep:
     path: Path
     found: int = 0
 
+    def unchanged_by(self) -> list[str]:
+        """Keys of the axes along which no answer changes by more than the tolerance."""
+        answers = [getattr(self, name) for name in (*OF_MODES, "greatest_pressure")]
+        return [
+            axis.key
+            for k, axis in enumerate(self.axes)
+            if len(axis.values) > 1
+            and all(np.allclose(a, a.take([0], axis=k), rtol=self.tolerance, atol=0, equal_nan=True) for a in answers)
+        ]
+
     def to_dict(self) -> dict[str, Any]:
         """Return a summary ready for JSON; the values themselves are in the file."""
         answered = np.isfinite(self.estimate) & np.isfinite(self.frequencies[..., 0])
@@ -61,6 +71,7 @@ class Sweep:
             "tolerance": self.tolerance,
             "basis": {"equilibrium": self.basis[0], "vibration": self.basis[1]},
             "without_answer": self.reasons,
+            "unchanged_by": self.unchanged_by(),
             "found": self.found,
             "beyond_law": int(np.count_nonzero(self.above_range_share > ABOVE_RANGE)),
             "file": str(self.path),

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Iterable, Sequence
 
+from faying.apart import in_processes
 from faying.sweeps.cluster import on_cluster
 from faying.sweeps.work import Rows, Work
 
@@ -25,7 +26,7 @@ def each(
 
     Raises:
         InputError: No Dask scheduler answers, its package is missing, or its cluster has other versions.
-        FayingError: The cluster could not do the work.
+        FayingError: The cluster could not do the work, or a process was ended from outside.
     """
     if dask is None and jobs == 1:
         for indices in chunks:
@@ -35,12 +36,8 @@ def each(
         if chunks:
             yield from on_cluster(work, chunks, dask, what)
         return
-    from joblib import Parallel, delayed
-
-    pool = Parallel(
-        n_jobs=jobs, return_as="generator_unordered", backend="loky", initializer=end_with, initargs=(os.getpid(),)
-    )
-    yield from pool(delayed(_done)(work, c) for c in chunks)
+    calls = [(work, chunk) for chunk in chunks]
+    yield from in_processes(_done, calls, jobs, initializer=end_with, initargs=(os.getpid(),))
 
 
 def _done(work: Work, indices: Sequence[int]) -> tuple[Sequence[int], Rows]:

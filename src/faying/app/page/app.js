@@ -89,8 +89,9 @@ async function upload(files) {
   for (const file of files) {
     try {
       $("status").textContent = `reading ${file.name} …`;
-      const replaces = file.name === state.project?.study && state.project.text !== null;
-      if (replaces && !confirm(`Replace ${file.name}? Its text is lost.`)) continue;
+      const study = file.name === state.project?.study && state.project.text !== null;
+      const replaces = study || state.project?.files.some((one) => one.name === file.name);
+      if (replaces && !confirm(`Replace ${file.name}? Its ${study ? "text" : "content"} is lost.`)) continue;
       await ask("POST", "file", replaces ? { name: file.name, replace: "yes" } : { name: file.name }, file);
       last = file.name;
     } catch (fault) {

@@ -15,16 +15,14 @@ from faying.text import json_text
 
 @click.command()
 @click.argument("record", type=PATH)
-@click.option(
-    "--band", required=True, metavar="LOW:HIGH", help='Band with this mode alone, for example "150 Hz:180 Hz".'
-)
+@click.option("--band", required=True, metavar="LOW:HIGH", help='Band around this mode, for example "150 Hz:180 Hz".')
 @click.option("--start", metavar="TIME", help='Start of the free decay, for example "0.02 s" [of the record].')
 @click.option("--impulse", metavar="TEXT", help='Impulse of the hit, if RECORD is an FRF, for example "0.3 N s".')
 @click.option(
     "--function", type=click.IntRange(1, 10_000), help="Number of the FRF in a universal file, from 1 [the only one]."
 )
 @click.option(
-    "--cycles", type=click.IntRange(3, 10_000), default=20, show_default=True, help="Periods that give one point."
+    "--cycles", type=click.IntRange(3, 10_000), default=20, show_default=True, help="Least periods that give one point."
 )
 @click.option("--out", type=FILE, help="CSV file for faying backbone --measured.")
 @click.option("--plot", type=FILE, help="Draw the points (svg, png, pdf).")
@@ -33,7 +31,8 @@ def command(record: Path, **options: Any) -> None:
     """Frequency and damping of one mode against its amplitude, from the free decay in RECORD.
 
     RECORD is a CSV file with the columns time [s] and acceleration [m/s^2] (or velocity [m/s], displacement [m]), or a
-    universal file with the FRF of a single hit. A band-pass filter and the Hilbert transform give the points.
+    universal file with the FRF of a single hit. One to three exponentials in moving stretches give the points of the
+    mode that is the largest at the start.
     """
     from faying.output.table import measured_backbone, text
     from faying.result import backbone as drawing

@@ -25,6 +25,7 @@ COLUMNS = {
     "elements": "",
 }
 NEEDED = ("R", "h_a")
+OF_CAPS = {"m": "1 um", "Pa": "300 MPa"}  # examples in messages
 
 
 @click.command()
@@ -132,7 +133,7 @@ def case_of(options: dict[str, Any]) -> Any:
         value = options.get(key)
         if value in (None, "", ()):
             if default is None:
-                raise InputError(f"{key} is missing; give --{key.replace('_', '-')}, for example '10 {unit}'")
+                raise InputError(f"{key} is missing; give --{key.replace('_', '-')}, for example '{OF_CAPS[unit]}'")
             return default
         return float(value) if unit == "" else parse(value, unit, name=key)
 

@@ -61,7 +61,7 @@ class AsperityModel(ABC):
 
     def __post_init__(self) -> None:
         if not 0 < self.R < np.inf:
-            raise InputError(f"{self.name}: R = {self.R} m; it must be positive, for example 15e-6")
+            raise InputError(f"{self.name}: R = {self.R:.6g} m; it must be positive, for example 15e-6")
 
     @property
     def critical(self) -> float:

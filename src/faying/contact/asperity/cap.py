@@ -11,7 +11,7 @@ from faying.errors import InputError
 
 def _cap(R: float, height: float, gamma: float) -> tuple[float, float]:
     if not (0 < R < inf and 0 < height < inf):
-        raise InputError(f"R = {R} m, height = {height} m; both must be positive")
+        raise InputError(f"R = {R:.6g} m, height = {height:.6g} m; both must be positive")
     if not gamma > 1:
         raise InputError(f"gamma = {gamma}; it must be above 1, for example 1.5")
     return log(2 * R * height) / 2, log(log(gamma)) / 2
@@ -32,12 +32,12 @@ def dimension_of_cap(R: float, height: float, *, G: float, gamma: float = 1.5) -
     """
     log_r, half = _cap(R, height, gamma)
     if not 0 < G < inf:
-        raise InputError(f"G = {G} m; it must be positive, for example 1.5e-10")
+        raise InputError(f"G = {G:.6g} m; it must be positive, for example 1.5e-10")
     # ln h = (3-D) ln(2 r) + (D-2) ln G + ln(ln gamma)/2 is linear in D
     D = (3 * (log(2) + log_r) - 2 * log(G) + half - log(height)) / (log(2) + log_r - log(G))
     if not 2 < D < 3:
         raise InputError(
-            f"R = {R} m, height = {height} m and G = {G} m give D = {D:.4g}, outside 2 to 3; "
+            f"R = {R:.6g} m, height = {height:.6g} m and G = {G:.6g} m give D = {D:.4g}, outside 2 to 3; "
             "change G, or give D in its place"
         )
     return D
@@ -48,6 +48,8 @@ def cap_of_fractal(D: float, G: float, radius: float, *, gamma: float = 1.5) -> 
     if not 2 < D < 3:
         raise InputError(f"D = {D}; the dimension of a surface is between 2 and 3, for example 2.4")
     if not (0 < G < inf and 0 < radius < inf and gamma > 1):
-        raise InputError(f"G = {G} m, radius = {radius} m, gamma = {gamma}; need positive lengths and gamma above 1")
+        raise InputError(
+            f"G = {G:.6g} m, radius = {radius:.6g} m, gamma = {gamma}; need positive lengths and gamma above 1"
+        )
     height = 2 ** (3 - D) * G ** (D - 2) * sqrt(log(gamma)) * radius ** (3 - D)
     return radius**2 / (2 * height), height

@@ -18,7 +18,8 @@ class Ghaednia(JacksonGreenBase):
     """Jackson-Green (cosine hardness) corrected for the tangent modulus E_t of a bilinear material.
 
     doi:10.1115/1.4041537. tangent_ratio = E_t/E of the softer body, 0 (perfectly plastic) up to below 1:
-    F = Fp + (Fe - Fp) (1 - exp(-3.3 E_t/E)), a = ae + (ap - ae) exp(U), U falling with E_t. Raises InputError outside.
+    F = Fp + (Fe - Fp) (1 - exp(-3.3 E_t/E)), a = ae + (ap - ae) exp(U), U falling with E_t, of the radii a of the
+    contact. Raises InputError outside.
     """
 
     tangent_ratio: float = 0.02
@@ -43,13 +44,13 @@ class Ghaednia(JacksonGreenBase):
         hertz_work = 0.4 * (high**2.5 - ELASTIC_END**2.5)
         return AsperityCurve(
             P=np.where(elastic, low**1.5, P + s * (high**1.5 - P)),
-            A=np.where(elastic, low, high + (A - high) * self._area_share(high)),
+            A=np.where(elastic, low, (high**0.5 + (A**0.5 - high**0.5) * self._radius_share(high)) ** 2),
             dP=np.where(elastic, 1.5 * low**0.5, dP + s * (1.5 * high**0.5 - dP)),
             W=0.4 * low**2.5 + s * hertz_work + (1 - s) * self._work(high, "cosine"),
         )
 
-    def _area_share(self, x: Array) -> Array:
-        """exp(U), the share of the perfectly plastic area beyond the elastic one."""
+    def _radius_share(self, x: Array) -> Array:
+        """exp(U), the share of what the perfectly plastic radius is beyond the elastic one."""
         t = self.tangent_ratio
         if t == 0:
             return np.ones_like(x)

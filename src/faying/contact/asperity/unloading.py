@@ -27,7 +27,7 @@ class Unloading(ABC):
 
     def __post_init__(self) -> None:
         if not 0 < self.delta_max < np.inf:
-            raise InputError(f"{self.name}: delta_max = {self.delta_max} m; it must be positive")
+            raise InputError(f"{self.name}: delta_max = {self.delta_max:.6g} m; it must be positive")
 
     @cached_property
     def top(self) -> AsperityResponse:

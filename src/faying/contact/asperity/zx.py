@@ -37,7 +37,7 @@ class ZX(AsperityModel):
         if not 2 < self.D < 3:
             raise InputError(f"ZX: D = {self.D}; the dimension of a surface is between 2 and 3, for example 2.4")
         if not 0 < self.height < np.inf:
-            raise InputError(f"ZX: height = {self.height} m; it must be positive, for example 1e-7")
+            raise InputError(f"ZX: height = {self.height:.6g} m; it must be positive, for example 1e-7")
 
     @property
     def _power(self) -> float:

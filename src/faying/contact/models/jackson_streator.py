@@ -60,7 +60,7 @@ class JacksonStreator(ContactLaw):
     def __post_init__(self) -> None:
         super().__post_init__()
         side = sqrt(self.scan_area)
-        require("JS", self.shortest < side, f"shortest = {self.shortest} m; it must be below {side:.4g} m")
+        require("JS", self.shortest < side, f"shortest = {self.shortest:.6g} m; it must be below {side:.4g} m")
 
     @cached_property
     def layers(self) -> tuple[Array, Array]:

@@ -208,7 +208,7 @@ class JK(ContactLaw):
         )
         need(
             self.shear_stress == 0 or self.shear_ratio == 0,
-            f"shear_ratio = {self.shear_ratio} and shear_stress = {self.shear_stress} Pa; give one of them",
+            f"shear_ratio = {self.shear_ratio} and shear_stress = {self.shear_stress:.6g} Pa; give one of them",
         )
         need(
             (self.shear_stress == 0 and self.shear_ratio == 0) or self.pair.friction > 0,

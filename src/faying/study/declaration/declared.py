@@ -95,15 +95,23 @@ class Key:
         return replace(self, varies=Varies(put=put, place=place, short=short))
 
     @classmethod
-    def quantity(cls, unit: str, says: str, default: Any = None, *, positive: bool = True) -> "Key":
-        """A number with its unit, in the range that numbers of this unit have."""
-        ends = values.RANGES.get(unit) if positive else None
+    def quantity(
+        cls,
+        unit: str,
+        says: str,
+        default: Any = None,
+        *,
+        positive: bool = True,
+        ends: tuple[float, float] | None = None,
+    ) -> "Key":
+        """A number with its unit, in the range that is given or else that numbers of this unit have."""
+        own, ends = ends, ends or (values.RANGES.get(unit) if positive else None)
         return cls(
             f"quantity [{unit}]",
             QUANTITY,
             says,
             default,
-            read=lambda value, name: values.quantity(value, unit, name, positive=positive),
+            read=lambda value, name: values.quantity(value, unit, name, positive=positive, ends=own),
             unit=unit,
             allowed="positive" if positive and default != 0 else "",
             parameter=Parameter(unit, says, *ends, "[]") if ends else Parameter(unit, says, 0 if positive else -inf),

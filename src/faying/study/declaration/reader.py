@@ -6,6 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
+from faying import checks
 from faying.contact.parameter import FILE, Parameter
 from faying.errors import InputError
 from faying.geometry.selectors import Selector
@@ -97,9 +98,7 @@ class Table:
         return key if key in self.keys else NAME
 
     def _existing(self, value: Any, name: str) -> Path:
-        if not isinstance(value, str):
-            raise InputError(f"{name} = {value!r} should be a file name in quotes")
-        path = self.faults.folder / value
+        path = self.faults.folder / checks.path(value, name)
         if not path.is_file():
             raise InputError(f"{name}: no file {path}")
         self.faults.files.append(path)

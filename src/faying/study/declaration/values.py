@@ -7,7 +7,7 @@ from faying.checks import plain
 from faying.errors import InputError
 
 MAX_COUNT = 1_000_000  # of what is counted, where a key says no less
-MOST_FRICTION, MOST_LOSS = 10.0, 2.0  # coefficient of friction, loss factor [-]
+MOST_LOSS = 2.0  # loss factor [-]: no structure loses more in a radian than it stores
 # least and greatest size that a number of a unit has in any bolted structure: beyond them a unit or a power is wrong
 RANGES = {
     "m": (1e-12, 1e4),
@@ -16,20 +16,22 @@ RANGES = {
     "Pa": (1e-3, 1e14),
     "Pa/m": (1.0, 1e20),
     "Hz": (1e-6, 1e10),
-    "kg": (1e-12, 1e9),
-    "kg/m^3": (1e-3, 1e6),
-    "m/s^2": (1e-9, 1e9),
+    "kg": (1e-12, 1e7),  # the heaviest machines have some 1e6 kg
+    "kg/m^3": (1.0, 3e4),  # aerogels and osmium
+    "m/s^2": (1e-9, 1e6),  # shocks of 100,000 g
     "N*m": (1e-9, 1e9),
     "W/(m*K)": (1e-6, 1e6),
 }
 
 
-def quantity(value: Any, unit: str, name: str, *, positive: bool = True) -> float:
-    """Parse one quantity; InputError where the unit is missing or the value not positive."""
+def quantity(
+    value: Any, unit: str, name: str, *, positive: bool = True, ends: tuple[float, float] | None = None
+) -> float:
+    """Parse one quantity; InputError where the unit is missing or the value not positive or out of its range."""
     number = units.parse(value, unit, name=name)
     if positive and number <= 0:
         raise InputError(f'{name} = "{value}" must be positive')
-    least, greatest = RANGES.get(unit, (0.0, float("inf")))
+    least, greatest = ends or RANGES.get(unit, (0.0, float("inf")))
     if (number and not (least <= abs(number) or not positive)) or abs(number) > greatest:
         low, high = (units.show(end, unit) for end in (least, greatest))
         raise InputError(f'{name} = "{value}" is beyond what a bolted structure has, {low} to {high}; check its unit')

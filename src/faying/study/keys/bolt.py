@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.bolt.bolt import Bolt, Washer, torque_to_preload
+from faying.bolt.bolt import BOLT_FRICTION, NUT_FACTOR, Bolt, Washer, torque_to_preload
 from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import PROOF, Fastener, Thread
 from faying.contact.parameter import Parameter
@@ -155,6 +155,8 @@ def _forces(
         table.faults.add(f'{table.where}.preload is missing; give a force such as "12 kN", or torque = "20 N m"')
     if "preload" in table.data and "torque" in table.data:
         table.faults.add(f"{table.where} has both preload and torque; give one of them")
+    if any(key in table.data and value is None for key, value in thread.items()):
+        return ()  # a fault is noted
     if torques is not None:
         if diameter is None:
             table.faults.add(f"{table.where}: a torque gives a preload only with the thread's diameter; add diameter")
@@ -201,14 +203,14 @@ BOLT: Declared = {
             "0.577 d2 mu + 0.65 d mu) of ISO 16047."
         ),
     ),
-    "thread_friction": Key.number("Coefficient of friction in the thread."),
-    "head_friction": Key.number("Coefficient of friction under the head."),
+    "thread_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction in the thread."),
+    "head_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction under the head."),
     "preload": replace(
         _rising("N", "12 kN", 'One force or several that rise, for example ["6 kN", "12 kN"].'),
         parameter=Parameter("N", "preload of the bolts", 0),
     ).varying(lambda forces, value: np.full_like(forces, value)),
     "torque": _rising("N*m", "20 N m", "One tightening torque or several that rise, in place of preload."),
-    "nut_factor": Key.number("K of F = T/(K d)."),
+    "nut_factor": Key.within(*NUT_FACTOR, "K of F = T/(K d)."),
     "grade": Key.text(
         'Property class of ISO 898-1, for example "8.8"; compares the preload with the proof load.',
         examples=lambda: PROOF,

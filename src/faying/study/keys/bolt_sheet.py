@@ -4,8 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from faying.bolt.bolt import BOLT_FRICTION
 from faying.bolt.tightening import tightening
 from faying.errors import InputError
+from faying.materials import MOST_FRICTION
 from faying.study.declaration.declared import QUANTITY, WORDS, Declared, Key, listed, one_or_more
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity
@@ -119,18 +121,6 @@ def _axial(value: Any, name: str) -> tuple[float, float]:
     return low, high
 
 
-def _number(low: float, high: float, says: str, default: float | None = None) -> Key:
-    """A number from the lower to the higher."""
-    form = f"a number from {low:g} to {high:g}"
-
-    def read(value: Any, name: str) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-            raise InputError(f"{name} = {value!r} should be {form}")
-        return float(value)
-
-    return Key(form, {"type": "number", "minimum": low, "maximum": high}, says, default, read=read)
-
-
 def _force(says: str) -> Key:
     """A force that is not negative."""
 
@@ -149,15 +139,15 @@ BOLT_SHEET: Declared = {
         'Way of tightening, as of [uncertain] preload; "torque wrench, friction estimated" where '
         "left out and nothing scatters."
     ),
-    "tightening_factor": _number(1.0, MAX_FACTOR, "Greatest over least assembly preload, in place of tightening."),
-    "thread_friction": _number(
-        0.02, 1.0, "Coefficient of friction in the thread; that of the bolt, or 0.12, where left out."
+    "tightening_factor": Key.within(1.0, MAX_FACTOR, "Greatest over least assembly preload, in place of tightening."),
+    "thread_friction": Key.within(
+        *BOLT_FRICTION, "Coefficient of friction in the thread; that of the bolt, or 0.12, where left out."
     ),
-    "head_friction": _number(
-        0.02, 1.0, "Coefficient of friction under the head; that of the bolt, or 0.12, where left out."
+    "head_friction": Key.within(
+        *BOLT_FRICTION, "Coefficient of friction under the head; that of the bolt, or 0.12, where left out."
     ),
-    "slip_friction": _number(
-        0.02, 2.0, "Coefficient of friction of the clamped joint; the least of its joints where left out."
+    "slip_friction": Key.within(
+        0.02, MOST_FRICTION, "Coefficient of friction of the clamped joint; the least of its joints where left out."
     ),
     "load": Key(
         "the name of a [[load]], or a list of them",
@@ -181,7 +171,7 @@ BOLT_SHEET: Declared = {
         read=_axial,
         unit="N",
     ),
-    "introduction": _number(0.0, 1.0, "Load introduction factor n, from 0 to 1; 1 is a load at the seats.", 1.0),
+    "introduction": Key.within(0.0, 1.0, "Load introduction factor n, from 0 to 1; 1 is a load at the seats.", 1.0),
     "transverse": _force("Working load across the bolt, which friction carries."),
     "clamp": _force("Clamp load that is asked for, of a seal for example."),
     "embedding": Key.quantity(

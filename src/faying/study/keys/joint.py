@@ -9,9 +9,9 @@ from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.form.form import VARIED, Form
 from faying.joint.joint_law import JointLaw
+from faying.materials import MOST_FRICTION
 from faying.study.declaration.declared import NUMBER, Declared, Inner, Key, Put
 from faying.study.declaration.reader import Table
-from faying.study.declaration.values import MOST_FRICTION
 from faying.study.keys.face import face_names, two_faces
 from faying.study.keys.form import FORM, read_form
 from faying.study.keys.law import LAW, LawChoice

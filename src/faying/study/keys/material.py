@@ -5,10 +5,11 @@ from dataclasses import replace
 
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
-from faying.materials import CATALOGUE, STIFFEST, Material
+from faying.materials import CATALOGUE, MOST_FRICTION, STIFFEST, Material
 from faying.study.declaration.declared import NAME, REQUIRED, Declared, Inner, Key
 from faying.study.declaration.reader import Table
-from faying.study.declaration.values import MOST_FRICTION
+
+MODULI = (1e3, 2e12)  # Pa: gels and diamond
 
 
 def read_materials(top: Table) -> dict[str, Material]:
@@ -58,7 +59,7 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
 
 
 MATERIAL: Declared = {
-    "E": Key.quantity("Pa", "Young's modulus.", REQUIRED).varying(short="E"),
+    "E": Key.quantity("Pa", "Young's modulus.", REQUIRED, ends=MODULI).varying(short="E"),
     "nu": Key.number("Poisson's ratio, below 0.495 for parts.", REQUIRED),
     "density": Key.quantity("kg/m^3", "Density.", REQUIRED).varying(short="density"),
     "yield_strength": Key.quantity("Pa", "Yield strength; gives the hardness where that is left out."),

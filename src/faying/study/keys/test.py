@@ -1,7 +1,7 @@
 """The hammer test of a study: a list of frequencies, or a file of modes or FRFs."""
 
 from dataclasses import dataclass
-from math import inf
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,6 +16,7 @@ from faying.study.declaration.values import point, text
 from faying.study.declaration.values import quantity as read_quantity
 from faying.typing import Array, Index
 
+CROSSED = 0.9  # of the frequency before it: modes that cross with preload may stand in the order of another load
 QUANTITIES = ("receptance", "mobility", "accelerance")
 
 
@@ -94,7 +95,14 @@ def _listed(table: Table, loads: int) -> TestChoice:
             raise InputError(
                 f"{name} has rows of {some} frequencies; give the same modes, one or more, at each preload"
             )
-        return tuple(tuple(read_quantity(v, "Hz", name) for v in row) for row in value)
+        found = tuple(tuple(read_quantity(v, "Hz", name) for v in row) for row in value)
+        for row in found:
+            for low, high in pairwise(row):
+                if high < CROSSED * low:
+                    raise InputError(
+                        f"{name}: {high:g} Hz stands after {low:g} Hz; give the modes in the order they have"
+                    )
+        return found
 
     frequencies = table.take("frequencies", rows) or ()
     return TestChoice(
@@ -163,18 +171,6 @@ def _axis(value: Any, name: str) -> str:
     return text(value, name, ("x", "y", "z"))
 
 
-def _above_zero(says: str, default: float, most: float = inf) -> Key:
-    """A plain number above 0, up to a greatest."""
-    form = f"a plain number above 0{f' and at most {most:g}' if most < inf else ''}, for example 0.3"
-
-    def read(value: Any, name: str) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= most:
-            raise InputError(f"{name} = {value!r} should be {form}")
-        return float(value)
-
-    return Key(form, {"type": "number"}, says, default, read=read)
-
-
 FREQUENCIES = "one list of frequencies for each preload"
 NUMBERS = "one list for each preload, a number for each frequency"
 EACH = listed(listed(QUANTITY, 1), 1)
@@ -206,13 +202,13 @@ TEST: Declared = {
         "Where the hammer hits or the sensor sits.",
         unit="m",
     ),
-    "threshold": Key.number("Share of the largest motion from which the test sees a mode.", 0.1),
+    "threshold": Key.within(0, 1, "Share of the largest motion from which the test sees a mode.", 0.1),
     "file": Key.file("Universal file of modes or FRFs, in place of frequencies.", REQUIRED),
     "load": Key("quantity [N]", QUANTITY, "The preload to compare at; the last where left out.", unit="N"),
     "frame": Key.file("Table of points of the test with their place in the model."),
     "length_unit": Key.text("Unit of the positions, where the file states none."),
     "quantity": Key.text("What the FRFs are, where the file does not say.", None, QUANTITIES),
     "tolerance": Key.quantity("m", "Largest distance between a point of the test and the outline."),
-    "least_mac": _above_zero("Least MAC of a pair of modes.", 0.5, most=1.0),
-    "greatest_shift": _above_zero("Greatest relative difference of frequency in a pair.", 0.3),
+    "least_mac": Key.within(0.01, 1, "Least MAC of a pair of modes.", 0.5),
+    "greatest_shift": Key.within(1e-6, 10, "Greatest relative difference of frequency in a pair.", 0.3),
 }

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import FayingError, InputError, ReadError
-from faying.surface.heights import Instrument, check_points
+from faying.surface.heights import ASK_SIZE, ASK_UNITS, Instrument, check_points
 from faying.surface.scan import Profile, Scan
 from faying.text import few
 from faying.units import scale
@@ -59,20 +59,12 @@ def read(file: Path, xy_unit: str | None, z_unit: str | None, steps: Steps | Non
     ReadError where the library is not installed or cannot read the file.
     """
     content = _content(file)
-    if content.sizes is None and steps is None and xy_unit is None:
-        raise InputError(
-            f"{file}: the file does not state its physical size; give size or spacing in metres, for example "
-            f'read_scan("{file.name}", z_unit="nm", size=4e-3)'
-        )
     if content.sizes is None and steps is None:
-        raise InputError(f"{file}: the file does not state its physical size; give size or spacing in metres")
+        raise InputError(f"{file}: the file does not state its physical size; {ASK_SIZE}")
     if content.unit is None:
         lateral = xy_unit is not None or content.sizes is None
         if not lateral or z_unit is None:
-            raise InputError(
-                f'{file}: the file states no unit; give both, for example read_scan("{file.name}", xy_unit="um", '
-                'z_unit="nm"), or on the command line --xy-unit um --z-unit nm'
-            )
+            raise InputError(f"{file}: the file states no unit; give both, {ASK_UNITS}")
         xy = scale(xy_unit, "m", name="xy_unit") if xy_unit is not None else 1.0
         z = scale(z_unit, "m", name="z_unit")
     else:

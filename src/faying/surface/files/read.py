@@ -11,11 +11,10 @@ from faying.errors import FayingError, InputError, ReadError
 from faying.file_kinds import X3P, kind_held, kind_of, taken
 from faying.files import end_of
 from faying.surface.files.text import TextLayout
-from faying.surface.heights import sides_of, steps_of
+from faying.surface.heights import ASK_SIZE, ASK_UNITS, sides_of, steps_of
 from faying.surface.scan import Profile, Scan
 from faying.units import scale
 
-ASK = 'for example read_scan("{name}", xy_unit="mm", z_unit="um"), or on the command line --xy-unit mm --z-unit um'
 Lengths = float | str | tuple[float, float] | tuple[str, str] | None
 
 
@@ -145,13 +144,13 @@ def _scales(
     if layout.matrix:
         if not lateral or z_unit is None:
             raise InputError(
-                f"{file}: a matrix of heights states neither its size nor a unit; give size or spacing in metres and "
-                f'z_unit, for example read_scan("{file.name}", z_unit="um", size=4e-3)'
+                f"{file}: a matrix of heights states neither its size nor a unit; {ASK_SIZE}, and z_unit, for example "
+                '"um" (--z-unit um)'
             )
         return 1.0, 1.0, scale(z_unit, "m", name="z_unit")
     if xy_unit is None or z_unit is None:
         lacking = [n for n, u in (("xy_unit", xy_unit), ("z_unit", z_unit)) if u is None]
-        raise InputError(f"{file}: the file states no unit; give {' and '.join(lacking)}, {ASK.format(name=file.name)}")
+        raise InputError(f"{file}: the file states no unit; give {' and '.join(lacking)}, {ASK_UNITS}")
     xy = scale(xy_unit, "m", name="xy_unit")
     return xy, xy, scale(z_unit, "m", name="z_unit")
 
