@@ -157,6 +157,8 @@ class State(Summary):
     def load(self) -> str:
         """The preload in words."""
         values = sorted(set(self.forces))
+        if not values:
+            return load_text(0.0)
         if len(values) == 1:
             return f"{show(values[0], 'N')} per bolt"
         return f"{show(values[0], 'N')} to {show(values[-1], 'N')} per bolt"
@@ -220,7 +222,7 @@ class State(Summary):
 
 def solve_structure(
     structure: BoltedStructure,
-    preload: float | str | Mapping[str, float | str],
+    preload: float | str | Mapping[str, float | str] | None,
     *,
     modes: int,
     damping: Literal["hysteretic", "viscous"],
@@ -256,17 +258,25 @@ def solve_structure(
 
 
 def preload_case(
-    structure: BoltedStructure, preload: float | str | Mapping[str, float | str], order: Sequence[str] | None
+    structure: BoltedStructure, preload: float | str | Mapping[str, float | str] | None, order: Sequence[str] | None
 ) -> PreloadCase:
     """One preload of a structure, from what a user gives. Raises InputError where it is incomplete."""
     return PreloadCase(forces=bolt_forces(structure, preload), order=_order(structure, order))
 
 
-def bolt_forces(structure: BoltedStructure, preload: float | str | Mapping[str, float | str]) -> tuple[float, ...]:
+def bolt_forces(
+    structure: BoltedStructure, preload: float | str | Mapping[str, float | str] | None
+) -> tuple[float, ...]:
     """Force of each bolt [N]. Raises InputError where one is missing, unknown or not positive."""
     names = [bolt.name for bolt in structure.bolts]
-    if not names:
+    if not names and structure.joints:
         raise InputError("the structure has no bolts, so nothing pulls its joints together; give it bolts=[Bolt(...)]")
+    if not names and preload is not None:
+        raise InputError("preload: the structure has no bolts; leave it out")
+    if preload is None:
+        if names:
+            raise InputError(f"preload is missing; the bolts are {', '.join(map(repr, names))}")
+        return ()
     if not isinstance(preload, Mapping):
         return (number(preload, "preload", "N", least=0),) * len(names)
     unknown = [name for name in preload if name not in names]

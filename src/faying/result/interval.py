@@ -89,6 +89,10 @@ class Interval(Summary):
         squares = self._squares
         return np.asarray(squares / np.maximum(squares.sum(axis=0), MIN_SQUARE))
 
+    def between(self, free: Array | None, bonded: Array | None) -> "Interval":
+        """The interval between frequencies [Hz] of free and of bonded faces; as it is where there are none."""
+        return self if free is None or bonded is None else replace(self, free=free, bonded=bonded)
+
     def narrowed(self, left: Mapping[str, float]) -> "Interval":
         """The interval where sources are known better.
 

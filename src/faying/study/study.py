@@ -8,7 +8,7 @@ from typing import Any, Self
 from faying.bolt.bolt import Bolt
 from faying.bolt.dowel import Dowel
 from faying.bolt.solid_bolt import SolidBolt
-from faying.errors import ReadError
+from faying.errors import InputError, ReadError
 from faying.joint.attachments import PointMass, Support
 from faying.joint.modal import ModesChoice
 from faying.joint.preload_case import PreloadCase
@@ -183,12 +183,19 @@ class Study(Summary):
         return replace(study, name=file.stem)
 
     @classmethod
+    def read_bolted(cls, path: "str | Path | Study") -> "Study":
+        """As `read`, for work on joints under preload. Raises InputError also where there is none."""
+        study = cls.read(path)
+        if not study.joints:
+            raise InputError("this needs joints that bolts press together, and the study has none; see faying run")
+        return study
+
+    @classmethod
     def from_dict(cls, data: dict[str, Any], *, folder: Path, where: str = "study", text: str = "") -> Self:
         """Check a study given as nested dictionaries (as TOML gives them); file names are relative to `folder`."""
         faults = Faults(folder=folder)
-        written = data
-        data, inside = extracted(data)
-        top = Table(data, "", faults, STUDY)
+        given, inside = extracted(data)
+        top = Table(given, "", faults, STUDY)
         title = top.get("title")
         materials = read_materials(top)
         geometry = read_geometry(top)
@@ -198,9 +205,8 @@ class Study(Summary):
         surface = top.inner("surface", SurfaceChoice.of)
         alternatives = tuple(AlternativeChoice.of(t, i) for i, t in enumerate(top.tables("alternative")))
         backbone = top.inner("backbone", BackboneChoice.of)
-        _note_lacking(faults, joints, law, surface)
-        _note_lacking_alternatives(faults, joints, (law, surface), alternatives, backbone)
-        bolts, forces = _bolts(top, materials)
+        _note_lacking_laws(faults, joints, (law, surface), alternatives, backbone)
+        bolts, forces = _bolts(top, materials, joints)
         cases = read_loads(top.tables("load"))
         names = [bolt.name for bolt in bolts]
         sheets = read_bolt_sheets(top.tables("bolt_sheet"), names, [load.name for load in cases])
@@ -209,12 +215,11 @@ class Study(Summary):
         modes = top.inner("modes", read_modes) or ModesChoice()
         order = top.inner("tightening", lambda table: read_order(table, names))
         response = top.inner("response", ResponseChoice.of)
-        test, hammer = read_test(top, max(forces, key=len, default=()))
+        test, hammer = read_test(top, max(forces, key=len, default=(0.0,)))
         geometry = _with_selectors(geometry, faults)
-        loads = max(map(len, forces), default=1)
-        known = Known(joints=joints, bolts=names, loads=loads, materials=materials, parts=parts)
-        scattered = top.inner("uncertain", lambda table: table.data)
-        uncertain = read_uncertain(scattered, inside, known, faults)
+        count = max(map(len, forces), default=1)
+        known = Known(joints=joints, bolts=names, loads=count, materials=materials, parts=parts)
+        uncertain = read_uncertain(top.inner("uncertain", lambda table: table.data), inside, known, faults)
         top.close()
         faults.raise_if_any(where)
         return cls(
@@ -228,7 +233,9 @@ class Study(Summary):
             joints=joints,
             bonds=bonds,
             bolts=bolts,
-            preloads=tuple(PreloadCase(forces=one, order=order) for one in zip(*forces, strict=True)),
+            preloads=tuple(
+                PreloadCase(forces=one, order=order) for one in (zip(*forces, strict=True) if forces else [()])
+            ),
             modes=modes,
             response=response,
             test=test,
@@ -242,21 +249,36 @@ class Study(Summary):
             supports=supports,
             masses=masses,
             text=text,
-            data=written,
+            data=data,
             files=tuple(dict.fromkeys(faults.files)),
         )
 
 
 def _bolts(
-    top: Table, materials: dict[str, Material]
+    top: Table, materials: dict[str, Material], joints: tuple[JointChoice, ...]
 ) -> tuple[tuple[Bolt | SolidBolt, ...], tuple[tuple[float, ...], ...]]:
-    """Read [[bolt]], with the forces [N] of each; a fault is noted where they have different numbers of preloads."""
+    """Read [[bolt]], with the forces [N] of each; faults: other numbers of preloads, joints without bolts, or none."""
+    _note_unpressed(top, joints)
     read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt"))]
     counts = {len(forces) for _, forces in read if forces}
     if len(counts) > 1:
         many = " and ".join(map(str, sorted(counts)))
         top.faults.add(f"the bolts have {many} preloads; give each bolt the same number")
     return tuple(bolt for bolt, _ in read if bolt is not None), tuple(forces for _, forces in read if forces)
+
+
+def _note_unpressed(top: Table, joints: tuple[JointChoice, ...]) -> None:
+    """Note joints without a bolt, a bolt without a joint, and what is asked of joints where there are none."""
+    if joints and "bolt" not in top.data:
+        top.faults.add(
+            "[[bolt]] is missing: nothing presses the joints; give bonded = true to those that are welded or glued"
+        )
+    if not joints:
+        top.faults.lines += [
+            f"{key} needs a [[joint]] that bolts press together, and the study has none"
+            for key in ("bolt", "alternative", "backbone", "tightening")
+            if key in top.data
+        ]
 
 
 def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
@@ -267,14 +289,15 @@ def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
     return replace(geometry, face={**geometry.face, **faults.selectors})
 
 
-def _note_lacking_alternatives(
+def _note_lacking_laws(
     faults: Faults,
     joints: tuple[JointChoice, ...],
     shared: tuple[LawChoice, SurfaceChoice | None],
     alternatives: tuple[AlternativeChoice, ...],
     backbone: BackboneChoice | None,
 ) -> None:
-    """Note what the laws of [[alternative]] and [backbone] do not find in the surfaces."""
+    """Note what the laws of the study, of [[alternative]] and of [backbone] do not find in the surfaces."""
+    _note_lacking(faults, joints, *shared)
     changes = [
         (f"alternative[{number}]: ", other.law, other.surface) for number, other in enumerate(alternatives, start=1)
     ]
