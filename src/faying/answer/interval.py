@@ -11,6 +11,7 @@ from faying.case.changed import ChangedCase, can_change, frequencies_of
 from faying.case.ends import Pair, at_median_ratio, quantiles
 from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
+from faying.case.part_tests import KnownParts
 from faying.case.scatter import ENDS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
 from faying.case.solve import LoadedCase
 from faying.errors import FayingError
@@ -35,6 +36,8 @@ def intervals(
     """
     if not case.study.modes.intervals:
         return None, None, []
+    parts = KnownParts.of(case, states)
+    known = [] if parts is None else list(parts.notes())
     changes: dict[str, list[ChangedCase]] = {}
     draws = Draws(wavy=[None] * len(case.structure.joints))
     if can_change(case):
@@ -55,12 +58,13 @@ def intervals(
         found = iter(frequencies_of(case, states, [one for some in changes.values() for one in some]))
     except FayingError as fault:
         text = f"no interval from the law and no draws of waves: {fault}"
-        return None, _combined(case, states, {}, mesh), [Note(code="interval", text=text)]
+        return None, _combined(case, states, {}, mesh, parts), [*known, Note(code="interval", text=text)]
     by_name = {name: [next(found) for _ in some] for name, some in changes.items()}
     band = draws.band(states, by_name.pop("waves", []))
     middle = by_name.pop("middle")[0] if "middle" in by_name else None
     pairs = {name: (one, other) for name, (one, other) in by_name.items()}
-    return band, _combined(case, states, pairs, mesh, middle, band), [*draws.notes(case), *law_notes(case)]
+    combined = _combined(case, states, pairs, mesh, parts, middle, band)
+    return band, combined, [*known, *draws.notes(case), *law_notes(case)]
 
 
 def law_factors(case: Case) -> list[tuple[float, float, float] | None]:
@@ -108,6 +112,7 @@ def _combined(
     states: Sequence[LoadedCase],
     pairs: dict[str, Pair],
     mesh: MeshError | None,
+    parts: KnownParts | None,
     middle: Array | None = None,
     band: WaveBand | None = None,
 ) -> Interval:
@@ -135,6 +140,7 @@ def _combined(
         found["preload"] = _by_preload(case.loads, frequencies, _preload_factors(case))
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):
         found[name] = SCORE * sd * np.array([-1.0, 1.0])[:, None, None] * np.ones(frequencies.shape)
+    found = found if parts is None else parts.instead(found)
     if mesh is not None:
         found["mesh"] = mesh.offsets
     names = tuple(name for name in SCATTER if name in found)

@@ -21,6 +21,7 @@ DEFAULT_WAY = "torque wrench, friction estimated"  # of tightening, where nothin
 TWO_SIGMA = 0.02275  # probability below two standard deviations
 SCORE = 1.6449  # standard deviations from the median to these ends
 OF_PARTS = ("E", "density")
+DENSITY_SD = 0.01  # of ln density of steel (JCSS Probabilistic Model Code, part 2.1)
 MESH_NOTED = 5e-3  # estimated error of a frequency by the mesh that is noted
 
 
@@ -87,6 +88,7 @@ SCATTER = {
         remedy="weigh and ring each part alone",
         left=0.2,
     ),
+    "parts": Scatter(source="stiffness and mass of each part, as its own weight and free modes leave them"),
     "mode": Scatter(
         distribution=Distribution(kind="normal", centre=1.0, spread=0.01),
         source="convention: dimensions, supports and what the model leaves out, each mode by itself",

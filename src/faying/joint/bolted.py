@@ -291,6 +291,21 @@ class BoltedStructure(Summary):
             )
         return replace(self, joints=tuple(joints))
 
+    @checked_call
+    def alone(self, part: str) -> Self:
+        """Return one part by itself, free: no joint, bolt, support or mass.
+
+        Args:
+            part: Name of the part.
+
+        Raises:
+            InputError: There is no such part.
+        """
+        mesh, nodes = self.mesh, self.mesh.part_nodes(part)
+        blocks = tuple(np.searchsorted(nodes, cells) for cells in mesh.parts[part])
+        own = Mesh(points=mesh.points[nodes], parts={part: blocks}, faces={}, face_part={}, source=mesh.source)
+        return type(self)(own, {part: self.materials[part]}, [])
+
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
         pairs = [(joint.interface, joint.law) for joint in self.joints]

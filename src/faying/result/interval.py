@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from faying.style import Summary
 from faying.typing import Array
 
-OF_PARTS = ("mesh", "structure", "mode")  # sources that no stiffness of a joint bounds
+OF_PARTS = ("mesh", "structure", "parts", "mode")  # sources that no stiffness of a joint bounds
 MAX_ROWS = 10  # of a summary
 MIN_SQUARE = 1e-300  # where nothing moves a frequency
 
@@ -57,12 +57,13 @@ class Interval(Summary):
         return self._at(0.5)
 
     def _at(self, share: float) -> Array:
-        """Frequencies so many widths from the middle, between those of free and of bonded faces."""
-        middle = self.offsets.mean(axis=1).sum(axis=0)
+        """Frequencies so many widths from the middle, between those of free and of bonded faces of such parts."""
+        middles = self.offsets.mean(axis=1)
         of_parts = [k for k, name in enumerate(self.sources) if name in OF_PARTS]
-        room = np.exp(np.sqrt(self._squares[of_parts].sum(axis=0)) / 2)
-        found = self.frequencies * np.exp(middle + share * self.width)
-        return np.asarray(np.clip(found, np.asarray(self.free) / room, np.asarray(self.bonded) * room))
+        parts, room = middles[of_parts].sum(axis=0), np.sqrt(self._squares[of_parts].sum(axis=0)) / 2
+        found = self.frequencies * np.exp(middles.sum(axis=0) + share * self.width)
+        low, high = np.asarray(self.free) * np.exp(parts - room), np.asarray(self.bonded) * np.exp(parts + room)
+        return np.asarray(np.clip(found, low, high))
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return 5 %, the best estimate and 95 % of each mode at the greatest preload."""

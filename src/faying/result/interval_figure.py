@@ -22,6 +22,7 @@ SOURCES = {
     "preload": COLOURS[4],
     "mesh": "#4d4d4d",
     "structure": COLOURS[7],
+    "parts": COLOURS[1],
     "mode": "#d9d9d9",
 }
 

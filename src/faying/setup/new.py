@@ -277,7 +277,10 @@ def selector_text(selector: Selector) -> str:
 
 
 def _parts(proposal: Proposal, answers: Answers, assumed: list[str]) -> str:
-    lines = [f"# The catalogue has {', '.join(CATALOGUE)}; [material.NAME] describes one of your own."]
+    lines = [
+        f"# The catalogue has {', '.join(CATALOGUE)}; [material.NAME] describes one of your own.",
+        '# Of a part weighed and rung alone: mass = "1.234 kg", frequencies = ["512 Hz", "1.4 kHz"], its free modes.',
+    ]
     guessed = []
     for part in proposal.facts.parts:
         material = answers.materials.get(part.name)

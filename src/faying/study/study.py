@@ -25,7 +25,7 @@ from faying.study.keys.geometry import GeometryChoice, read_geometry
 from faying.study.keys.joint import JointChoice, read_joints
 from faying.study.keys.law import LAW, LawChoice
 from faying.study.keys.load import read_loads
-from faying.study.keys.material import read_materials, read_parts
+from faying.study.keys.material import PartTestChoice, read_materials, read_parts
 from faying.study.keys.solution import ResponseChoice, read_modes, read_order
 from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice
@@ -56,6 +56,7 @@ class Study(Summary):
         alternatives: other laws and surfaces whose modes stand beside those of the study.
         bolt_sheets: what is said for the sheets of the bolts.
         load_cases: what acts on the preloaded structure.
+        part_tests: what was measured of parts alone.
         uncertain: which numbers scatter; None where the file does not say.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
     """
@@ -84,6 +85,7 @@ class Study(Summary):
     name: str = PLAIN
     bolt_sheets: tuple[BoltSheetChoice, ...] = ()
     load_cases: tuple[Load, ...] = ()
+    part_tests: Mapping[str, PartTestChoice] = field(default_factory=dict)
     text: str = field(default="", repr=False)
     data: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     files: tuple[Path, ...] = ()
@@ -117,6 +119,7 @@ class Study(Summary):
             "load cases": self.load_cases,
             "bolt sheets": self.bolt_sheets,
             "scatter": self.uncertain,
+            "tests of parts": self.part_tests,
         }
         return [name for name, there in every.items() if there]
 
@@ -199,7 +202,7 @@ class Study(Summary):
         title = top.get("title")
         materials = read_materials(top)
         geometry = read_geometry(top)
-        parts = read_parts(top, materials)
+        parts, part_tests = read_parts(top, materials)
         joints, bonds = read_joints(top)
         law = LawChoice.of(top.table("law") or Table({}, "law", faults, LAW.keys))
         surface = top.inner("surface", SurfaceChoice.of)
@@ -228,6 +231,7 @@ class Study(Summary):
             materials=materials,
             geometry=geometry,
             parts=parts,
+            part_tests=part_tests,
             surface=surface,
             law=law,
             joints=joints,
