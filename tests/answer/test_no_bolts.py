@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.optimize import brentq
 
 import faying
 from faying.answer.run import run
@@ -73,9 +74,24 @@ def test_a_free_bar_vibrates_as_a_rod_and_as_a_beam(engine):
 
 def test_a_held_bar_vibrates_as_a_fixed_rod():
     """f = c/(4 L)."""
-    held = faying.joint.attachments.Support(face="p0.left")
-    found = faying.Structure(bar(LENGTH), ROD, [], supports=[held]).solve(modes=8).modes.frequencies
+    held = faying.Support(face="p0.left")
+    found = faying.Structure(bar(LENGTH), ROD, [], supports=[held]).solve(modes=8).frequencies
     assert np.abs(found / (np.sqrt(ROD.E / ROD.density) / (4 * LENGTH)) - 1).min() < 1e-4
+
+
+def test_a_rod_with_a_mass_at_its_end():
+    """x tan x = m_rod/m_tip, x = omega L/c, of a rod that is fixed at the other end."""
+    rod = ROD.density * LENGTH * WIDTH * HEIGHT
+    held, tip = faying.Support(face="p0.left"), faying.PointMass(mass=rod / 2, face="p0.right")
+    found = faying.Structure(bar(LENGTH), ROD, [], supports=[held], masses=[tip]).solve(modes=8).frequencies
+    x = brentq(lambda x: x * np.tan(x) - 2, 0.1, 1.5)
+    expected = x * np.sqrt(ROD.E / ROD.density) / (2 * np.pi * LENGTH)
+    assert np.abs(found / expected - 1).min() < 1e-4
+
+
+def test_a_wrong_support_is_answered_in_words():
+    with pytest.raises(faying.InputError, match="Support takes no stiff; did you mean stiffness"):
+        faying.Support(face="p0.left", stiff=1.0)
 
 
 def test_a_structure_without_bolts_takes_no_preload_and_one_with_joints_needs_them():

@@ -167,6 +167,14 @@ def test_weight_alone_moves_the_best_estimate_by_half_of_it(assembly):
     tests = {name: PartTestChoice(mass=1.01 * mass) for name, mass in masses.items()}
     after = narrowed(case, states, interval, tests)
     np.testing.assert_allclose(after.best / interval.best, 1 / np.sqrt(1.01), rtol=3e-4)
+    assert "structure" in after.sources  # nothing was rung
+
+
+def test_a_part_that_weighs_something_else_is_noted(assembly):
+    case, states, _, _ = assembly
+    study = replace(case.study, part_tests={"low": PartTestChoice(mass=1.3 * case.structure.part_masses[0])})
+    known = KnownParts.of(replace(case, study=study), states)
+    assert [note.code for note in known.notes()] == ["part-test", "part-mass"]
 
 
 def test_the_shares_of_energy_of_bonded_parts_sum_to_one():

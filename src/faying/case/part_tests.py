@@ -162,7 +162,7 @@ class KnownParts:
         counts: of each: modes that were measured, and those of them that the model has.
         strain, kinetic: share of the energy of each mode in each of them (p, loads, m) [-].
         others: share of the strain energy in parts without a test (loads, m) [-].
-        all_known: whether there are none of these.
+        all_rung: whether every part has measured modes.
     """
 
     names: tuple[str, ...]
@@ -171,7 +171,7 @@ class KnownParts:
     strain: Array
     kinetic: Array
     others: Array
-    all_known: bool
+    all_rung: bool
 
     @classmethod
     def of(cls, case: Case, states: Sequence[LoadedCase]) -> "KnownParts | None":
@@ -191,13 +191,13 @@ class KnownParts:
             strain=strain.swapaxes(0, 1),
             kinetic=kinetic.swapaxes(0, 1),
             others=others,
-            all_known=len(parts) == len(case.structure.mesh.parts),
+            all_rung=sum(len(part.measured) > 0 for part in parts) == len(case.structure.mesh.parts),
         )
 
     def instead(self, offsets: Mapping[str, Array]) -> dict[str, Array]:
         """Offsets of ln f (2, loads, m) by what is not known, "structure" and "mode" as the parts' tests leave them.
 
-        Parts without a test keep their share of the prior. Where there are none, "parts" stands for "structure".
+        Parts without a test keep their share of the prior. Where all were rung, "parts" stands for "structure".
         """
         structure, mode = offsets["structure"], offsets["mode"]
         by_factor = np.stack([self.strain, -self.kinetic], axis=-1) / 2
@@ -207,7 +207,7 @@ class KnownParts:
         own = sum((share * one.scatter) ** 2 for share, one in zip(self.strain, self.factors, strict=True))
         rest = np.clip(1 - self.strain.sum(axis=0), 0.0, 1.0)
         found = {name: one for name, one in offsets.items() if name != "structure"}
-        found["parts" if self.all_known else "structure"] = _added(structure * self.others, middle, variance)
+        found["parts" if self.all_rung else "structure"] = _added(structure * self.others, middle, variance)
         found["mode"] = _added(mode * rest, 0.0, own)
         return found
 
@@ -223,12 +223,16 @@ class KnownParts:
             text = f"part {name!r}, by its own test: {' and '.join(words)}"
             text += f"; each of {paired} modes is within {100 * one.scatter:.2g} %" if paired else ""
             yield Note(code="part-test", text=f"{text} (standard deviations)")
+            look = "look at its geometry, material and units"
+            if abs(one.mean[1]) > FARTHEST * DENSITY_SD:
+                yield Note(
+                    code="part-mass", text=f"part {name!r} weighs {np.exp(one.mean[1]):.3g} times its model; {look}"
+                )
             if paired < measured:
                 text = (
                     f"part {name!r}: the model has {paired} of its {measured} measured modes; the others are left out. "
-                    "Give free modes of the part alone; else look at its geometry, material and units"
                 )
-                yield Note(code="test-modes", text=text)
+                yield Note(code="test-modes", text=f"{text}Give free modes of the part alone; else {look}")
 
 
 def _added(prior: Array, middle: Any, variance: Any) -> Array:

@@ -154,6 +154,11 @@ class State(Summary):
         )
 
     @property
+    def frequencies(self) -> Array:
+        """Frequencies of the elastic modes [Hz] (m,)."""
+        return self.vibration.damped.frequencies
+
+    @property
     def load(self) -> str:
         """The preload in words."""
         values = sorted(set(self.forces))
