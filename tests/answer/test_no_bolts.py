@@ -79,6 +79,15 @@ def test_a_held_bar_vibrates_as_a_fixed_rod():
     assert np.abs(found / (np.sqrt(ROD.E / ROD.density) / (4 * LENGTH)) - 1).min() < 1e-4
 
 
+@pytest.mark.parametrize("engine", ["reanalysis", "direct"])
+def test_parts_on_supports_of_their_own_have_the_modes_of_each(engine):
+    """Two like bars that do not touch, each held at one end: every mode of one bar, twice."""
+    half, held = LENGTH / 2, [faying.Support(face="p0.left"), faying.Support(face="p1.right")]
+    one = faying.Structure(bar(half), ROD, [], supports=held[:1]).solve(modes=3, engine=engine).frequencies
+    two = faying.Structure(bar(half, half, gap=1e-3), ROD, [], supports=held).solve(modes=6, engine=engine).frequencies
+    np.testing.assert_allclose(two, np.repeat(one, 2), rtol=1e-7)
+
+
 def test_a_rod_with_a_mass_at_its_end():
     """x tan x = m_rod/m_tip, x = omega L/c, of a rod that is fixed at the other end."""
     rod = ROD.density * LENGTH * WIDTH * HEIGHT
@@ -95,7 +104,7 @@ def test_a_wrong_support_is_answered_in_words():
 
 
 def test_a_structure_without_bolts_takes_no_preload_and_one_with_joints_needs_them():
-    with pytest.raises(faying.InputError, match="no bolts; leave it out"):
+    with pytest.raises(faying.InputError, match="preload = 1000.*; the bolts are none"):
         faying.Structure(bar(LENGTH), ROD, []).solve(1e3)
     halves = faying.Structure(bar(LENGTH / 2, LENGTH / 2), STEEL, [faying.Joint(("p0.right", "p1.left"), law=LAW)])
     with pytest.raises(faying.InputError, match="nothing pulls its joints together"):
@@ -127,6 +136,15 @@ def test_what_has_no_meaning_without_joints_is_absent(result, tmp_path):
     assert "no preload" in str(result)
     assert "NaN" not in json.dumps(facts)
     assert faying.load(result.save(tmp_path / "r.nc")) == result
+
+
+def test_a_study_and_a_state_without_joints_print_themselves(folder):
+    study = faying.Study.read(folder / "study.toml")
+    assert not {"joints", "bolts"} & set(study.summary()[1])
+    state = faying.Structure(bar(LENGTH), ROD, []).solve(modes=2)
+    assert "no preload" in str(state)
+    with pytest.raises(faying.InputError, match="the joints are none"):
+        state.plot()
 
 
 def test_the_interval_of_a_part_holds_its_frequency_as_modelled(result):

@@ -48,11 +48,13 @@ class PartFactors:
         mean: ln s_E and ln s_m (2,).
         covariance: of both (2, 2).
         scatter: standard deviation of ln f of each mode by itself [-].
+        count: how many modes of the test they come from.
     """
 
     mean: Array
     covariance: Array
     scatter: float
+    count: int
 
     @classmethod
     def of(
@@ -78,21 +80,17 @@ class PartFactors:
             rows, seen = np.vstack([rows, [0.0, 1.0]]), np.append(ratios, mass)
             precision = np.append(precision, BALANCE_SD**-2)
         covariance = np.linalg.inv(np.diag(np.array(prior) ** -2.0) + (rows.T * precision) @ rows)
-        return cls(mean=covariance @ (rows.T @ (precision * seen)), covariance=covariance, scatter=scatter)
+        mean = covariance @ (rows.T @ (precision * seen))
+        return cls(mean=mean, covariance=covariance, scatter=scatter, count=len(ratios))
 
 
 @dataclass(frozen=True, kw_only=True)
 class PartAlone:
-    """One part of a case by itself, with its test."""
+    """One part by itself, with the mesh and the material that it has in a structure, and its test."""
 
     name: str
     structure: Structure
     test: PartTestChoice
-
-    @classmethod
-    def of(cls, case: Case, name: str) -> "PartAlone":
-        """The part with the mesh and the material that it has in the case."""
-        return cls(name=name, structure=case.structure.alone(name), test=case.study.part_tests[name])
 
     @cached_property
     def measured(self) -> Array:
@@ -113,8 +111,8 @@ class PartAlone:
         errors = np.zeros(count) if surplus is None else surplus.error(found.shapes[:, elastic], squares) / 2
         return found.frequencies[elastic], errors
 
-    def factors(self, structure: float, mode: float) -> tuple[PartFactors, int]:
-        """What the test says, and how many of its modes the model has.
+    def factors(self, structure: float, mode: float) -> PartFactors:
+        """What the test says.
 
         structure, mode: standard deviations of ln f, common to all modes and of each by itself, before the test.
         """
@@ -128,8 +126,7 @@ class PartAlone:
             ratios = np.log(measured[:, None] / computed) + errors  # a finer mesh has it lower by its error
             pairs = same_modes(ratios + (weighed or 0.0) / 2, structure, mode)
             ratios, errors = ratios[pairs], errors[pairs[1]]
-        prior = 2 * structure, DENSITY_SD
-        return PartFactors.of(ratios, errors / SCORE, prior=prior, mode=mode, mass=weighed), len(ratios)
+        return PartFactors.of(ratios, errors / SCORE, prior=(2 * structure, DENSITY_SD), mode=mode, mass=weighed)
 
 
 def same_modes(ratios: Array, structure: float, mode: float) -> tuple[Index, Index]:
@@ -158,16 +155,14 @@ class KnownParts:
     """Parts of a case that were weighed or rung alone, and what each mode has of them.
 
     Args:
-        names, factors: of these parts (p).
-        counts: of each: modes that were measured, and those of them that the model has.
+        parts, factors: these (p), and what their tests say.
         strain, kinetic: share of the energy of each mode in each of them (p, loads, m) [-].
         others: share of the strain energy in parts without a test (loads, m) [-].
         all_rung: whether every part has measured modes.
     """
 
-    names: tuple[str, ...]
+    parts: tuple[PartAlone, ...]
     factors: tuple[PartFactors, ...]
-    counts: tuple[tuple[int, int], ...]
     strain: Array
     kinetic: Array
     others: Array
@@ -176,22 +171,21 @@ class KnownParts:
     @classmethod
     def of(cls, case: Case, states: Sequence[LoadedCase]) -> "KnownParts | None":
         """Those of a case, solved under each load; None where no part has a test."""
-        study = case.study
+        study, structure = case.study, case.structure
         if not study.part_tests:
             return None
-        parts = [PartAlone.of(case, name) for name in study.part_tests]
+        tests = study.part_tests.items()
+        parts = tuple(PartAlone(name=name, structure=structure.alone(name), test=test) for name, test in tests)
         priors = structure_sd(study.uncertain), mode_sd(study.uncertain)
-        found = [part.factors(*priors) for part in parts]
         energies = [energy_shares(case, parts, state) for state in states]
         strain, kinetic, others = (np.stack(one) for one in zip(*energies, strict=True))
         return cls(
-            names=tuple(part.name for part in parts),
-            factors=tuple(factors for factors, _ in found),
-            counts=tuple((len(part.measured), count) for part, (_, count) in zip(parts, found, strict=True)),
+            parts=parts,
+            factors=tuple(part.factors(*priors) for part in parts),
             strain=strain.swapaxes(0, 1),
             kinetic=kinetic.swapaxes(0, 1),
             others=others,
-            all_rung=sum(len(part.measured) > 0 for part in parts) == len(case.structure.mesh.parts),
+            all_rung=sum(len(part.measured) > 0 for part in parts) == len(structure.mesh.parts),
         )
 
     def instead(self, offsets: Mapping[str, Array]) -> dict[str, Array]:
@@ -213,26 +207,22 @@ class KnownParts:
 
     def notes(self) -> Iterator[Note]:
         """What the test of each part says, and which of its modes the model does not have."""
-        for name, one, (measured, paired) in zip(self.names, self.factors, self.counts, strict=True):
-            words = [
-                f"{what} is {np.exp(mean):.4f} +- {sd:.4f} times that of the model"
-                for what, mean, sd in zip(
-                    ("stiffness", "mass"), one.mean, np.sqrt(np.diag(one.covariance)), strict=True
-                )
-            ]
-            text = f"part {name!r}, by its own test: {' and '.join(words)}"
-            text += f"; each of {paired} modes is within {100 * one.scatter:.2g} %" if paired else ""
+        for part, one in zip(self.parts, self.factors, strict=True):
+            name, (stiffness, mass), sd = part.name, np.exp(one.mean), np.sqrt(np.diag(one.covariance))
+            text = f"part {name!r}, by its own test: stiffness {stiffness:.4f} +- {sd[0]:.4f} and mass {mass:.4f} +- "
+            text += f"{sd[1]:.4f} times that of the model"
+            text += f"; each of {one.count} modes is within {100 * one.scatter:.2g} %" if one.count else ""
             yield Note(code="part-test", text=f"{text} (standard deviations)")
             look = "look at its geometry, material and units"
             if abs(one.mean[1]) > FARTHEST * DENSITY_SD:
-                yield Note(
-                    code="part-mass", text=f"part {name!r} weighs {np.exp(one.mean[1]):.3g} times its model; {look}"
-                )
-            if paired < measured:
+                yield Note(code="part-mass", text=f"part {name!r} weighs {mass:.3g} times its model; {look}")
+            measured = len(part.measured)
+            if one.count < measured:
                 text = (
-                    f"part {name!r}: the model has {paired} of its {measured} measured modes; the others are left out. "
+                    f"part {name!r}: the model has {one.count} of its {measured} measured modes; the others are left "
                 )
-                yield Note(code="test-modes", text=f"{text}Give free modes of the part alone; else {look}")
+                text += f"out. Give free modes of the part alone; else {look}"
+                yield Note(code="test-modes", text=text)
 
 
 def _added(prior: Array, middle: Any, variance: Any) -> Array:

@@ -162,10 +162,8 @@ class State(Summary):
     def load(self) -> str:
         """The preload in words."""
         values = sorted(set(self.forces))
-        if not values:
-            return load_text(0.0)
-        if len(values) == 1:
-            return f"{show(values[0], 'N')} per bolt"
+        if len(values) < 2:
+            return f"{show(values[0], 'N')} per bolt" if values else load_text(0.0)
         return f"{show(values[0], 'N')} to {show(values[-1], 'N')} per bolt"
 
     @property
@@ -211,8 +209,8 @@ class State(Summary):
             InputError: There is no joint of this name.
         """
         names = [one.name for one in self.structure.joints]
-        if joint is not None and joint not in names:
-            raise InputError(f"joint = {shortened(joint)}; the joints are {', '.join(map(repr, names))}")
+        if not names or (joint is not None and joint not in names):
+            raise InputError(f"joint = {shortened(joint)}; the joints are {', '.join(map(repr, names)) or 'none'}")
         number = 0 if joint is None else names.index(joint)
         return pressure_axes(
             self.structure.surface(),
@@ -276,11 +274,9 @@ def bolt_forces(
     names = [bolt.name for bolt in structure.bolts]
     if not names and structure.joints:
         raise InputError("the structure has no bolts, so nothing pulls its joints together; give it bolts=[Bolt(...)]")
-    if not names and preload is not None:
-        raise InputError("preload: the structure has no bolts; leave it out")
+    if bool(names) is (preload is None):
+        raise InputError(f"preload = {shortened(preload)}; the bolts are {', '.join(map(repr, names)) or 'none'}")
     if preload is None:
-        if names:
-            raise InputError(f"preload is missing; the bolts are {', '.join(map(repr, names))}")
         return ()
     if not isinstance(preload, Mapping):
         return (number(preload, "preload", "N", least=0),) * len(names)

@@ -97,8 +97,8 @@ class Study(Summary):
         rows = {
             "geometry": self.geometry.file.name,
             "parts": ", ".join(f"{part} ({material})" for part, material in self.parts.items()),
-            "joints": f"{', '.join(joint.name for joint in self.joints)} ({law})",
-            "bolts": f"{', '.join(bolt.name for bolt in self.bolts)}, {preloads} kN",
+            **({"joints": f"{', '.join(joint.name for joint in self.joints)} ({law})"} if self.joints else {}),
+            **({"bolts": f"{', '.join(bolt.name for bolt in self.bolts)}, {preloads} kN"} if self.bolts else {}),
             **({"dowels": ", ".join(dowel.name for dowel in self.dowels)} if self.dowels else {}),
             "supports": str(len(self.supports)) if self.supports else "none: free",
             "modes": str(self.modes.count),
