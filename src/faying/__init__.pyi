@@ -40,6 +40,8 @@ from .identify.identification import Identification as Identification
 from .identify.of_study import identify as identify
 from .identify.predict import predict as predict
 from .identify.prediction import Prediction as Prediction
+from .joint.attachments import PointMass as PointMass
+from .joint.attachments import Support as Support
 from .joint.joint import Joint as Joint
 from .joint.state import State as State
 from .joint.state import VibrationModes as VibrationModes

@@ -63,6 +63,7 @@ LIMITS = frozenset(
         "backbone-bound",
         "model-modes",
         "test-modes",
+        "part-mass",
         "left-out",
         "not-mixed",
         "loads-stick",

@@ -170,8 +170,8 @@ def _name_like(unit: str) -> str:
 
 
 def load_text(load: float) -> str:
-    """Write a preload [N] in kN: load_text(12000.0) is "12 kN"."""
-    return f"{load / 1e3:.4g} kN"
+    """Write a preload [N] in kN: load_text(12000.0) is "12 kN"; "no preload" where it is 0, as no bolt's is."""
+    return f"{load / 1e3:.4g} kN" if load else "no preload"
 
 
 def in_mm(point: Iterable[float]) -> str:

@@ -75,8 +75,8 @@ def test_narrowing_is_what_a_run_with_the_narrower_input_finds(plain, tmp_path, 
     known = "" if source == "law" else LAW
     wide = faying.run(study(tmp_path, known)) if known else plain
     narrow = faying.run(study(tmp_path, f"{known}\n{lines}"))
-    expected = wide.interval.narrowed({source: left})
-    gain, again = 1 - expected.width / wide.interval.width, 1 - narrow.interval.width / wide.interval.width
+    expected = wide.interval.narrowed_width({source: left})
+    gain, again = 1 - expected / wide.interval.width, 1 - narrow.interval.width / wide.interval.width
     assert gain.max() > {"law": 0.1}.get(source, 1e-3)
     assert again == pytest.approx(gain, abs=0.1 * gain.max())
 

@@ -146,7 +146,7 @@ def result():
     f = np.array([[100.0, 250.0, 600.0], [110.0, 260.0, 610.0]])
     offsets = 0.01 * np.array([1.0, 2.0, 1.5, 0.5, 1.2, 1.5, 1.0])[:, None, None, None]
     ends = np.array([-1.0, 1.0])[None, :, None, None] * offsets * np.ones((1, 1, 2, MODES))
-    interval = Interval(sources=SOURCES, offsets=ends, median=f)
+    interval = Interval.about(f, dict(zip(SOURCES, ends, strict=True)))
     damping = np.array([1e-3, 1.1e-3, 4e-3])[None, :, None] * np.ones((2, 3, MODES))
     test = np.array([[98.0, 252.0], [111.0, 290.0]])
     paired = np.array([[0, 1], [0, 1]])

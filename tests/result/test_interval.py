@@ -14,10 +14,8 @@ SCORE = 1.6448536
 
 def interval(*sources: tuple[float, float]) -> Interval:
     """One load, one mode; each source by its mean and standard deviation of ln f."""
-    offsets = np.array([[-SCORE * sd, SCORE * sd] for _, sd in sources])
-    names = tuple(f"source {k}" for k in range(len(sources)))
-    median = 100.0 * np.exp(sum(m for m, _ in sources))
-    return Interval(sources=names, offsets=offsets[:, :, None, None], median=np.array([[median]]))
+    offsets = {f"source {k}": np.array([-SCORE * sd, SCORE * sd])[:, None, None] for k, (_, sd) in enumerate(sources)}
+    return Interval.about(np.array([[100.0 * np.exp(sum(m for m, _ in sources))]]), offsets)
 
 
 def test_independent_normal_sources_have_the_quantiles_of_their_sum():
@@ -33,13 +31,9 @@ def test_independent_normal_sources_have_the_quantiles_of_their_sum():
 
 
 def test_no_stiffness_of_a_joint_passes_free_and_bonded_faces():
-    found = Interval(
-        sources=("law", "mode"),
-        offsets=np.array([[[-0.9, 0.3]], [[-0.02, 0.02]]]).reshape(2, 2, 1, 1),
-        median=np.array([[100.0]]),
-        free=[60.0],
-        bonded=[105.0],
-    )
+    offsets = {"law": np.array([-0.9, 0.3]), "mode": np.array([-0.02, 0.02])}
+    plain = Interval.about(np.array([[100.0]]), {name: one[:, None, None] for name, one in offsets.items()})
+    found = plain.between(np.array([60.0]), np.array([105.0]))
     low, high = found.low, found.high
     # what is not known of the parts moves the bounds as well
     assert low[0, 0] == pytest.approx(60 * np.exp(-0.02))
@@ -52,8 +46,8 @@ def test_one_source_that_is_not_symmetric_keeps_its_own_quantiles():
     low, middle, high = 100 * (1 - np.exp(-x))
     ends = np.log([low / middle, high / middle])
     still = np.array([-1e-4, 1e-4])
-    offsets = np.stack([ends, still])[:, :, None, None]
-    found = Interval(sources=("law", "other"), offsets=offsets, median=np.array([[middle]]))
+    offsets = {"law": ends[:, None, None], "other": still[:, None, None]}
+    found = Interval.about(np.array([[middle]]), offsets)
     got = [found.low[0, 0], found.best[0, 0], found.high[0, 0]]
     assert got == pytest.approx([low, middle, high], rel=1e-6)
 
@@ -66,12 +60,8 @@ def test_shares_are_those_of_the_variance_and_sum_to_one():
 
 def test_what_is_known_better_narrows_by_its_share_alone():
     found = interval((0.0, 0.01), (0.01, 0.03))
-    less = found.narrowed({"source 1": 0.5})
-    assert less.width[0, 0] == pytest.approx(2 * SCORE * np.hypot(0.01, 0.015))
-    # the middle stays where it was
-    assert less.best[0, 0] == pytest.approx(np.sqrt(less.low * less.high)[0, 0])
-    assert less.best[0, 0] == pytest.approx(100 * np.exp(0.01))
-    assert found.narrowed({"another": 0.1}).width == found.width
+    assert found.narrowed_width({"source 1": 0.5})[0, 0] == pytest.approx(2 * SCORE * np.hypot(0.01, 0.015))
+    assert found.narrowed_width({"another": 0.1}) == found.width
 
 
 def result(test, predicted, low=None, high=None, modes=None):

@@ -118,9 +118,6 @@ def test_parts_that_do_not_touch_are_refused_with_their_distance(tmp_path):
     path = written(tmp_path / "far.step", box((0, 0, 0), (10, 10, 10), "a"), box((0, 0, 13), (10, 10, 20), "b"))
     with pytest.raises(faying.InputError, match="no flat faces of two parts touch; .* 'a' and 'b', 3 mm apart"):
         new.find(path)
-    alone = written(tmp_path / "one.step", box((0, 0, 0), (10, 10, 10), "a"))
-    with pytest.raises(faying.InputError, match="one part, 'a'; a joint needs two"):
-        new.find(alone)
 
 
 def test_a_core_hole_below_a_clearance_hole_takes_a_screw(tmp_path):

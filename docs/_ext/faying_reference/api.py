@@ -42,6 +42,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     "Materials": ("Material", "ContactPair", "CATALOGUE", "RIGID"),
     "Structures": (
         *("Structure", "State", "VibrationModes", "Joint", "Bolt", "Washer", "SolidBolt", "Dowel"),
+        *("Support", "PointMass"),
         *("Load", "Force", "Pressure", "Displacement"),
         *("Mesh", "read_mesh", "read_matrices", "Form", "Waviness", "GapMap", "FaceMap", "fit_form", "minimum_zone"),
     ),

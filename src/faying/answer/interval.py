@@ -1,7 +1,7 @@
 """From what is not known of a case to the interval of each frequency, one thing at a time."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from faying.case.changed import ChangedCase, can_change, frequencies_of
 from faying.case.ends import quantiles, ratios_of
 from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
+from faying.case.part_tests import KnownParts
 from faying.case.scatter import ENDS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
 from faying.case.solve import LoadedCase
 from faying.errors import NotConverged
@@ -22,6 +23,23 @@ from faying.typing import Array
 Found = Array | NotConverged  # frequencies [Hz] (loads, m) of a change, or why it has none
 ONE_EACH_WAY = np.array([-1.0, 1.0])[:, None, None]
 NOTED_RATIO = 2.0  # factor between measured stiffness and a law that is noted
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joints:
+    """Frequencies [Hz] (loads, m) of a case whose joints are changed.
+
+    Args:
+        band: draws of waves under the laws as they are; None where none are drawn.
+        drawn: the first of them; None where the case has the waves that it has.
+        about: the same draw with the medians of the law and of k_t/k_n; None where the joints cannot be changed.
+        pairs: both ends of each thing about that.
+    """
+
+    band: WaveBand | None = None
+    drawn: Found | None = None
+    about: Found | None = None
+    pairs: Mapping[str, tuple[Found, Found]] = field(default_factory=dict)
 
 
 def intervals(
@@ -38,12 +56,15 @@ def intervals(
     """
     if not case.study.modes.intervals:
         return None, None, []
-    if not can_change(case):
+    parts = KnownParts.of(case, states)
+    known = [] if parts is None else list(parts.notes())
+    if not case.structure.joints or not can_change(case):
         text = (
             "the intervals do not contain law, k_t/k_n and waves, which are found for bolts pulled at once, springs "
             "per area and hysteretic damping"
         )
-        return None, _combined(case, states, mesh), [Note(code=INCOMPLETE, text=text)]
+        lost = [Note(code=INCOMPLETE, text=text)] if case.structure.joints else []
+        return None, _combined(case, states, mesh, parts, Joints()), [*lost, *known]
     draws = Draws.of(case)
     plain = ChangedCase.nothing(case)
     waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
@@ -53,9 +74,9 @@ def intervals(
     of_waves, about, rest = found[: len(waves)], found[len(waves)], iter(found[len(waves) + 1 :])
     pairs = {name: (next(rest), next(rest)) for name in ends}
     band = draws.band(states, of_waves)
-    interval = _combined(case, states, mesh, band, of_waves[0] if waves else None, about, pairs)
-    lost = _incomplete({"draws of waves": of_waves, "the medians of law and k_t/k_n": [about], **pairs})
-    return band, interval, [*lost, *draws.notes(case), *law_notes(case)]
+    of_joints = Joints(band=band, drawn=of_waves[0] if waves else None, about=about, pairs=pairs)
+    lost = [*_incomplete({"draws of waves": of_waves, "the medians of law and k_t/k_n": [about], **pairs})]
+    return band, _combined(case, states, mesh, parts, of_joints), [*lost, *known, *draws.notes(case), *law_notes(case)]
 
 
 def _laws(case: Case, factor: int = 1, ratio: int = 1) -> list[JointLaw]:
@@ -134,33 +155,18 @@ def law_notes(case: Case) -> Iterator[Note]:
 
 
 def _combined(
-    case: Case,
-    states: Sequence[LoadedCase],
-    mesh: MeshError | None,
-    band: WaveBand | None = None,
-    drawn: Found | None = None,
-    about: Found | None = None,
-    pairs: Mapping[str, tuple[Found, Found]] | None = None,
+    case: Case, states: Sequence[LoadedCase], mesh: MeshError | None, parts: KnownParts | None, joints: Joints
 ) -> Interval:
-    """The interval of each frequency, by what each thing moves ln f (loads, m) from the best estimate.
-
-    Args:
-        case, states: the case and its state under each load.
-        mesh: the error of the mesh.
-        band: draws of waves under the laws as they are.
-        drawn: the first of them [Hz], as the case has its waves where it has none drawn.
-        about: the same draw with the medians of the law and of k_t/k_n.
-        pairs: both ends of each thing about that.
-    """
+    """The interval of each frequency, by what each thing moves ln f (loads, m) from the best estimate."""
     f = np.stack([state.damped.frequencies for state in states])
-    found, middle = {}, np.zeros(f.shape)
-    if isinstance(about, np.ndarray) and not isinstance(drawn, NotConverged):
-        middle += np.log(about / (f if drawn is None else drawn))
-        for name, (low, high) in (pairs or {}).items():
+    found, moved, middle, about = {}, np.zeros(f.shape), np.zeros(f.shape), joints.about
+    if isinstance(about, np.ndarray) and not isinstance(joints.drawn, NotConverged):
+        middle += np.log(about / (f if joints.drawn is None else joints.drawn))
+        for name, (low, high) in joints.pairs.items():
             if isinstance(low, np.ndarray) and isinstance(high, np.ndarray):
                 found[name] = np.log(np.stack([low, high]) / about)
-    if band is not None:
-        logs = np.log(band.frequencies / f)
+    if joints.band is not None:
+        logs = np.log(joints.band.frequencies / f)
         middle += logs.mean(axis=0)
         found["waves"] = SCORE * logs.std(axis=0, ddof=1) * ONE_EACH_WAY
     if all(state.ends and "scan" in state.ends for state in states):
@@ -170,10 +176,12 @@ def _combined(
         found["preload"] = _by_preload(case.loads, curve, _preload_factors(case))
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):
         found[name] = SCORE * sd * ONE_EACH_WAY * np.ones(f.shape)
+    if parts is not None:
+        found, moved = parts.instead(found)
     if mesh is not None:
-        found["mesh"], middle = mesh.offsets, middle + mesh.middle
-    names = tuple(name for name in SCATTER if name in found)
-    return Interval(sources=names, offsets=np.stack([found[name] for name in names]), median=f * np.exp(middle))
+        found["mesh"], moved = mesh.offsets, moved + mesh.middle
+    named = {name: found[name] for name in SCATTER if name in found}
+    return Interval.about(f * np.exp(middle + moved), named, moved)
 
 
 def _preload_factors(case: Case) -> tuple[float, float]:

@@ -187,7 +187,7 @@ def level_curves(
         The first harmonic of a cycle of hysteresis as springs, equivalent linearisation: Caughey 1960,
         doi:10.1115/1.3644075.
     """
-    study = Study.read(study)
+    study = Study.read_bolted(study)
     asked = {"amplitude": amplitude, "rest_damping": rest_damping}
     choice = chosen(study, friction, asked)
     if choice.rest_damping == "law":

@@ -1,6 +1,6 @@
 """From a study to its result."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from faying.answer.tracks import compared, encounters, macs, shapes_of
 from faying.backbones.backbone import backbones_of, friction_of
 from faying.bolt.bolt import FittedBolt
 from faying.case.alternative import Alternative, alternative_fields, solve_alternative
-from faying.case.bounds import bounds
+from faying.case.bounds import Bounds, bounds
 from faying.case.case import Case, Progress
 from faying.case.engine import engine_of
 from faying.case.level_damping import level_notes
@@ -84,14 +84,15 @@ def run(
     bolts, bolt_notes = _bolts(case, states, shapes)
     states = [released(state) for state in states]
     alternatives = [solve_alternative(case, choice, engine, progress) for choice in study.alternatives]
-    progress.begin("modes free and bonded")
-    free, bonded, notes = bounds(case)
+    if study.joints:
+        progress.begin("modes free and bonded")
+    ends, notes = bounds(case)
     notes = [*notes, *findings(case, states), *more, *bolt_notes]
-    result = replace(collect(case, states, shapes, (free, bonded), notes, alternatives), bolt_numbers=bolts)
+    result = replace(collect(case, states, shapes, ends, notes, alternatives), bolt_numbers=bolts)
     if band is not None:
         result = replace(result, **band.fields(case.loads))
     if interval is not None:
-        interval = replace(interval, free=free, bonded=bonded)
+        interval = interval.between(*ends)
         result = replace(
             result,
             interval_sources=interval.sources,
@@ -120,13 +121,13 @@ def stages(study: Study) -> list[str]:
     out = [] if study.hammer is None else ["hammer test"]
     out += ["surface", "mesh"]
     for number, load in enumerate(loads):
-        out += [f"preload {load}", f"modes at {load}"]
+        out += [f"preload {load}"] * bool(study.bolts) + [f"modes at {load}"]
         out += [f"frequency response at {load}"] if study.response is not None else []
         if study.hammer is not None and number == study.hammer.load:
             out.append("frequency response at the points of the test")
     out.append("intervals and bolts")
     out += [stage for _ in study.alternatives for load in loads for stage in (f"preload {load}", f"modes at {load}")]
-    out.append("modes free and bonded")
+    out += ["modes free and bonded"] * bool(study.joints)
     return out if study.backbone is None else [*out, f"mode {study.backbone.mode} over amplitude"]
 
 
@@ -134,7 +135,7 @@ def collect(
     case: Case,
     states: Sequence[LoadedCase],
     shapes: Sequence[Array],
-    bounds: tuple[Array, Array],
+    bounds: Bounds,
     notes: Sequence[Note],
     alternatives: Sequence[Alternative] = (),
 ) -> Result:
@@ -143,7 +144,7 @@ def collect(
     Args:
         case, states: the case and its state under each load.
         shapes: of the modes (m, nodes, 3) under each load.
-        bounds: frequencies [Hz] with the faces apart and with them bonded.
+        bounds: frequencies [Hz] with the faces apart and with them bonded; None twice without joints.
         notes: what is to be said beyond the notes of case and states.
         alternatives: the same under other laws.
     """
@@ -177,7 +178,7 @@ def collect(
         **_outline(structure, shapes, states),
         **_made_of(structure),
         **_dowels(structure, states),
-        **alternative_fields(alternatives, len(states), len(bounds[0])),
+        **alternative_fields(alternatives, len(states), study.modes.count),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
         unknowns=structure.mesh.unknowns,
@@ -222,7 +223,7 @@ def _predicted(other: Alternative, comparison: MeasuredComparison) -> Array:
     return np.full(comparison.frequencies.shape, np.nan)
 
 
-def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: tuple[Array, Array]) -> dict[str, Any]:
+def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: Bounds) -> dict[str, Any]:
     """Fields of the result that have a value or a row for each load.
 
     The ends of the range of a law lie between the frequencies of free and of bonded faces, as stiffness raises each of
@@ -233,8 +234,8 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: tuple[Array,
         "frequencies": np.stack([s.damped.frequencies for s in states]),
         "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
         "loss_error": np.stack([s.damped.error for s in states]),
-        "low": None if low is None else np.maximum(low, bounds[0]),
-        "high": None if high is None else np.minimum(high, bounds[1]),
+        "low": None if low is None or bounds[0] is None else np.maximum(low, bounds[0]),
+        "high": None if high is None or bounds[1] is None else np.minimum(high, bounds[1]),
         "outside_share": np.array([s.outside_share for s in states]),
         "above_range_share": np.array([s.above_range_share for s in states]),
         "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
@@ -307,26 +308,31 @@ def _on_faces(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, A
     interfaces = [joint.interface for joint in structure.joints]
     slips = [[np.linalg.norm(i.slip(s.preload.displacement), axis=1) for i in interfaces] for s in states]
     return {
-        "gap": np.concatenate([at_springs(k, i.gap) for k, i in enumerate(interfaces)]),
-        "slip": np.stack([np.concatenate([at_springs(k, one) for k, one in enumerate(row)]) for row in slips]),
+        "gap": _joined(at_springs(k, i.gap) for k, i in enumerate(interfaces)),
+        "slip": np.stack([_joined(at_springs(k, one) for k, one in enumerate(row)) for row in slips]),
     }
 
 
 def _at_points(states: Sequence[LoadedCase]) -> dict[str, Any]:
     """Fields of the result at the points of the joints, and their sums over each joint."""
     interfaces = [spring.interface for spring in states[0].springs]
-    totals = np.array([[spring.total() for spring in s.springs] for s in states])
+    totals = np.array([[spring.total() for spring in s.springs] for s in states]).reshape(len(states), -1, 2)
     return {
-        "points": np.concatenate([i.positions for i in interfaces]),
-        "weights": np.concatenate([i.weights for i in interfaces]),
-        "joint_of_point": np.concatenate([np.full(len(i.weights), k) for k, i in enumerate(interfaces)]),
-        "pressure": np.stack([np.concatenate([spring.pressure for spring in s.springs]) for s in states]),
-        "k_n": np.stack([np.concatenate([spring.k_n for spring in s.springs]) for s in states]),
-        "k_t": np.stack([np.concatenate([spring.k_t for spring in s.springs]) for s in states]),
+        "points": _joined(i.positions.ravel() for i in interfaces).reshape(-1, 3),
+        "weights": _joined(i.weights for i in interfaces),
+        "joint_of_point": _joined(np.full(len(i.weights), k) for k, i in enumerate(interfaces)),
+        "pressure": np.stack([_joined(spring.pressure for spring in s.springs) for s in states]),
+        "k_n": np.stack([_joined(spring.k_n for spring in s.springs) for s in states]),
+        "k_t": np.stack([_joined(spring.k_t for spring in s.springs) for s in states]),
         "slipping": np.array([s.preload.slipping for s in states]),
         "total_k_n": totals[:, :, 0],
         "total_k_t": totals[:, :, 1],
     }
+
+
+def _joined(of_joints: Iterable[Array]) -> Array:
+    """What all joints have, one after the other (q,)."""
+    return np.concatenate([np.zeros(0), *of_joints])
 
 
 def _bonded_above_range(states: Sequence[LoadedCase], lossless: bool) -> dict[str, Any]:

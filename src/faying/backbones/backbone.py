@@ -221,7 +221,7 @@ def backbone(
     asked: dict[str, Any] = {"mode": mode, "amplitude": amplitude, "at": at, "harmonics": harmonics}
     asked |= {"rest_damping": rest_damping, "slip": slip}
     asked["laws"] = None if law is None else laws([law] if isinstance(law, str) else list(law), "law")
-    study = Study.read(study)
+    study = Study.read_bolted(study)
     choice = chosen(study, friction, asked)
     if not many and len(choice.friction) > 1:
         given = ", ".join(f"{value:g}" for value in choice.friction)

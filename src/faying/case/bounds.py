@@ -15,19 +15,24 @@ from faying.numerics.by_parts import PartByPart
 from faying.numerics.constraint import constrain
 from faying.typing import Array
 
+Bounds = tuple[Array, Array] | tuple[None, None]
 STIFFER = 40.0  # springs in place of bonded faces, over those beyond the end of a law
 
 
-def bounds(case: Case) -> tuple[Array, Array, list[Note]]:
+def bounds(case: Case) -> tuple[Bounds, list[Note]]:
     """Frequencies [Hz] of the elastic modes with the faces of every joint apart, and with them bonded; notes.
 
+    None twice where there are no joints.
     Faces that match node for node have one answer, to 1e-8, under every solver: their unknowns become one, or, where
     that is not possible, springs between them are extrapolated to rigid ones. Other faces are tied, with a note.
     """
     structure = case.structure
+    if not structure.joints:
+        return (None, None), []
     free = modes_with(case.modal, *structure.dynamic_matrices, rigid=structure.unjoined_motions())
     frequencies = np.where(free.frequencies < RIGID_BELOW * case.shift_frequency, 0.0, free.frequencies)
-    return frequencies[_elastic(case)], *_bonded(case)
+    bonded, notes = _bonded(case)
+    return (frequencies[_elastic(case)], bonded), notes
 
 
 def _elastic(case: Case) -> slice:

@@ -33,9 +33,9 @@ class ChangedCase:
 
 
 def can_change(case: Case) -> bool:
-    """Whether small bases hold the case: no bolts tightened in order, viscous dampers, springs per node."""
-    ordered, viscous = case.study.in_order, case.study.modes.damping == "viscous"
-    return not (ordered or viscous or any(joint.per_node for joint in case.structure.joints))
+    """Whether it has joints that small bases hold: no bolts tightened in order, viscous dampers, springs per node."""
+    ordered, viscous, joints = case.study.in_order, case.study.modes.damping == "viscous", case.structure.joints
+    return bool(joints) and not (ordered or viscous or any(joint.per_node for joint in joints))
 
 
 def frequencies_of(

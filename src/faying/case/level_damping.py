@@ -116,7 +116,7 @@ def _why_none(case: Case) -> str:
 
 def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool) -> list[Note]:
     """What is assumed of friction and of rest."""
-    if not found or not case.study.modes.levels:
+    if not found or not case.study.modes.levels or not case.structure.joints:
         return []
     if any(one is None for one in found):
         return [Note(code="no-level-damping", text=_why_none(case))]

@@ -24,6 +24,7 @@ SCORE = 1.6449  # standard deviations from the median to these ends
 OF_PARTS = ("E", "density")
 # of ln f by E: half of the coefficient of variation 0.03 of steel, JCSS Probabilistic Model Code, part 3.2
 YOUNG = 0.015
+DENSITY_SD = 0.01  # of ln density of steel (JCSS Probabilistic Model Code, part 2.1)
 MESH_NOTED = 5e-3  # estimated error of a frequency by the mesh that is noted
 
 
@@ -89,6 +90,7 @@ SCATTER = {
         remedy="weigh and ring each part alone",
         left=0.2,
     ),
+    "parts": Scatter(source="stiffness and mass of each part, as its own weight and free modes leave them"),
     "mode": Scatter(
         distribution=Distribution(kind="normal", centre=1.0, spread=0.025),
         source="the same pairs, what is left of each mode: dimensions, supports and what the model leaves out",

@@ -75,7 +75,9 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     study, structure = case.study, case.structure
     preload_case = study.preloads[number]
     load = preload_case.preload
-    progress.begin(f"preload {preload_case.name}")
+    ranges = ranges and bool(structure.joints)
+    if structure.bolts:
+        progress.begin(f"preload {preload_case.name}")
     preload = engine.preload(number)
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {preload_case.name}")
@@ -140,9 +142,9 @@ def _responses(
 
 
 def _share(springs: Sequence[Springs[Interface]], masks: Sequence[Mask]) -> float:
-    """Share of the area of all joints where a mask of its points holds [-]."""
+    """Share of the area of all joints where a mask of its points holds [-]; 0 without joints."""
     area = sum(float(s.interface.weights @ mask) for s, mask in zip(springs, masks, strict=True))
-    return area / sum(s.interface.area for s in springs)
+    return area / sum(s.interface.area for s in springs) if springs else 0.0
 
 
 def _outside(structure: Structure, springs: Sequence[Springs[Interface]]) -> float:

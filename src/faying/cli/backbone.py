@@ -59,7 +59,7 @@ def command(study: Path, **options: Any) -> None:
     if plot:
         check_figure(plot)
     measured = [MeasuredBackbone.read(path) for path in options["measured"]]
-    plan = Study.read(study)
+    plan = Study.read_bolted(study)
     choice, loads = asked(plan, options)
     if options["quick"]:
         _quick(plan, choice, loads, options)

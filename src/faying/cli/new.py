@@ -21,7 +21,7 @@ from faying.text import json_text
 @click.option("--force", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found and written as JSON; asks nothing.")
 def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:
-    """Write a commented study of the assembly in FILE: joints, bolts, seats, mesh, and a list of what to fill in.
+    """Write a commented study of the part or assembly in FILE: joints, bolts, seats, mesh, and what to fill in.
 
     FILE is a STEP file, or a mesh of another program whose faces have names; its pretension sections become bolts.
     """
@@ -66,7 +66,7 @@ def asked(proposal: Any, scan: Path | None) -> Any:
             value_proc=lambda text: units.parse(text, "N", name="preload") and text,
         )
         preload = units.parse(answered, "N", name="preload")
-    if scan is None:
+    if scan is None and not proposal.alone:
         named = click.prompt("scan of one face (empty for a synthetic milled one)", default="", show_default=False)
         scan = Path(named) if named.strip() else None
     return new.Answers(materials=materials, preload=preload, scan=scan)

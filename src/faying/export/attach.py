@@ -135,7 +135,7 @@ def attach(
         ReadError, InputError: files, faces that are missing, apart, turned the same way or of doubtful size, and
             pressures that do not cover the face.
     """
-    file, study = Path(model), Study.read(study)
+    file, study = Path(model), Study.read_bolted(study)
     search = None if tolerance is None else number(tolerance, "tolerance", "m", least=0)
     at_frequency = None if frequency is None else number(frequency, "frequency", "Hz", least=0)
     spec = _joint(study, faces, joint)

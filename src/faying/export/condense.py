@@ -197,7 +197,7 @@ def condense(
         InputError, ReadError: What the study gives cannot be used, no such joint or preload, an open joint.
         NotConverged: An iteration stops short.
     """
-    study = Study.read(study)
+    study = Study.read_bolted(study)
     number, index = _joint(study, joint), preload_index(study.loads, preload)
     progress = Progress(STAGES + index, report)
     case = Case.of(study, progress)

@@ -124,7 +124,7 @@ def identify(
         Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294; Ching and Chen 2007,
         doi:10.1061/(ASCE)0733-9399(2007)133:7(816), for the sampling.
     """
-    study = Study.read(study)
+    study = Study.read_bolted(study)
     check(study, 8, seed)
     if isinstance(count, bool) or not isinstance(count, int) or count < 100:
         raise InputError(f"count = {count!r} should be a whole number of 100 or more")

@@ -69,7 +69,7 @@ def predict(
     Source:
         Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
     """
-    study = Study.read(study)
+    study = Study.read_bolted(study)
     study = replace(study, uncertain=with_assumed(study))
     check(study, samples, seed)
     choice = choice_of(study, samples, backbones) if backbones else None

@@ -9,6 +9,7 @@ from faying.errors import InputError
 from faying.fe.attach import mean_motion
 from faying.fe.faces import face_centre, sampled
 from faying.fe.mesh import Mesh
+from faying.misuse import checked_call
 from faying.typing import Array, Index
 
 AXES: dict[str, int] = {"x": 0, "y": 1, "z": 2}
@@ -16,6 +17,7 @@ AXES: dict[str, int] = {"x": 0, "y": 1, "z": 2}
 MAX_DISTANCE = 0.02
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class Support:
     """A face that is fixed, or on springs per area, in some directions.
@@ -66,6 +68,7 @@ class Support:
         return coo_array((np.concatenate(entries), where), shape=(n, n)).tocsr()
 
 
+@checked_call
 @dataclass(frozen=True, kw_only=True)
 class PointMass:
     """A mass that follows the mean motion of a face, or the node nearest to a point.

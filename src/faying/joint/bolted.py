@@ -291,6 +291,21 @@ class BoltedStructure(Summary):
             )
         return replace(self, joints=tuple(joints))
 
+    @checked_call
+    def alone(self, part: str) -> Self:
+        """Return one part by itself, free: no joint, bolt, support or mass.
+
+        Args:
+            part: Name of the part.
+
+        Raises:
+            InputError: There is no such part.
+        """
+        mesh, nodes = self.mesh, self.mesh.part_nodes(part)
+        blocks = tuple(np.searchsorted(nodes, cells) for cells in mesh.parts[part])
+        own = Mesh(points=mesh.points[nodes], parts={part: blocks}, faces={}, face_part={}, source=mesh.source)
+        return type(self)(own, {part: self.materials[part]}, [])
+
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
         pairs = [(joint.interface, joint.law) for joint in self.joints]
@@ -319,16 +334,21 @@ class BoltedStructure(Summary):
 
     def joint_stiffness(self, springs: Sequence[Springs[Interface]]) -> Any:
         """Stiffness [N/m] of the springs of all joints alone; fixed unknowns cleared."""
-        return added(None, [constrain(s.stiffness(), self.fixed, 0.0) for s in springs])
+        return added(self._nothing, [constrain(s.stiffness(), self.fixed, 0.0) for s in springs])
 
     def joint_loss(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> Any:
         """The loss of the springs of all joints, as `coupled` gives it."""
-        from scipy.sparse import csr_array
-
         weight = float(self.matrices[1].sum()) / 3 if viscous else 0.0
         lossy = [s for s in springs if s.lossy]
         losses = [s.viscous(weight) if viscous else s.loss() for s in lossy]
-        return added(csr_array(self.matrices[0].shape), [constrain(loss, self.fixed, 0.0) for loss in losses])
+        return added(self._nothing, [constrain(loss, self.fixed, 0.0) for loss in losses])
+
+    @property
+    def _nothing(self) -> Any:
+        """A stiffness [N/m] without entries."""
+        from scipy.sparse import csr_array
+
+        return csr_array(self.matrices[0].shape)
 
     def springs(self, pressures: Sequence[Array]) -> tuple[Springs[Interface], ...]:
         """Return the springs of every joint, as they are assembled.

@@ -143,6 +143,17 @@ class Equilibrium(ABC):
         Raises InputError when the load cannot balance, and NotConverged when Newton stops short.
         """
         if not np.any(load):
+            if not self.joints:  # nothing pulls the parts, and nothing is there to be pressed
+                return PreloadState(
+                    pressures=(),
+                    openings=(),
+                    slipping=(),
+                    displacement=np.zeros(load.shape),
+                    imbalance=0.0,
+                    newton_steps=0,
+                    inner_steps=0,
+                    factorisations=0,
+                )
             raise InputError("no bolt pulls: the load is zero everywhere; give at least one bolt a preload")
         self._check_load(load)
         self.stiffness = self.parts if shanks is None else self.parts + shanks

@@ -18,7 +18,7 @@ class PreloadCase:
     """The force of every bolt at one preload.
 
     Args:
-        forces: Force [N] of each bolt (b,), above 0, in the order of the structure's bolts.
+        forces: Force [N] of each bolt (b,), above 0, in the order of the structure's bolts; none where it has no bolts.
         order: Indices of the bolts in the order of tightening, any of them more than once; None where all are pulled at
             once.
     """
@@ -28,8 +28,8 @@ class PreloadCase:
 
     @property
     def preload(self) -> float:
-        """Force of the first bolt [N], by which results know the case."""
-        return self.forces[0]
+        """Force of the first bolt [N], by which results know the case; 0 without bolts."""
+        return self.forces[0] if self.forces else 0.0
 
     @property
     def name(self) -> str:
@@ -47,7 +47,7 @@ def preload_index(
     """
     if wanted is None:
         return len(preloads) - 1
-    force = number(wanted, name, "N", least=0)
+    force = number(wanted, name, "N", least=0, ends="()" if np.all(preloads) else "[)")
     index = int(np.argmin(np.abs(np.asarray(preloads) - force))) if len(preloads) else -1
     if index < 0 or abs(preloads[index] - force) > SAME * force:
         known = ", ".join(load_text(one) for one in preloads)

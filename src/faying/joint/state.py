@@ -154,11 +154,16 @@ class State(Summary):
         )
 
     @property
+    def frequencies(self) -> Array:
+        """Frequencies of the elastic modes [Hz] (m,)."""
+        return self.vibration.damped.frequencies
+
+    @property
     def load(self) -> str:
         """The preload in words."""
         values = sorted(set(self.forces))
-        if len(values) == 1:
-            return f"{show(values[0], 'N')} per bolt"
+        if len(values) < 2:
+            return f"{show(values[0], 'N')} per bolt" if values else load_text(0.0)
         return f"{show(values[0], 'N')} to {show(values[-1], 'N')} per bolt"
 
     @property
@@ -204,8 +209,8 @@ class State(Summary):
             InputError: There is no joint of this name.
         """
         names = [one.name for one in self.structure.joints]
-        if joint is not None and joint not in names:
-            raise InputError(f"joint = {shortened(joint)}; the joints are {', '.join(map(repr, names))}")
+        if not names or (joint is not None and joint not in names):
+            raise InputError(f"joint = {shortened(joint)}; the joints are {', '.join(map(repr, names)) or 'none'}")
         number = 0 if joint is None else names.index(joint)
         return pressure_axes(
             self.structure.surface(),
@@ -220,7 +225,7 @@ class State(Summary):
 
 def solve_structure(
     structure: BoltedStructure,
-    preload: float | str | Mapping[str, float | str],
+    preload: float | str | Mapping[str, float | str] | None,
     *,
     modes: int,
     damping: Literal["hysteretic", "viscous"],
@@ -256,17 +261,23 @@ def solve_structure(
 
 
 def preload_case(
-    structure: BoltedStructure, preload: float | str | Mapping[str, float | str], order: Sequence[str] | None
+    structure: BoltedStructure, preload: float | str | Mapping[str, float | str] | None, order: Sequence[str] | None
 ) -> PreloadCase:
     """One preload of a structure, from what a user gives. Raises InputError where it is incomplete."""
     return PreloadCase(forces=bolt_forces(structure, preload), order=_order(structure, order))
 
 
-def bolt_forces(structure: BoltedStructure, preload: float | str | Mapping[str, float | str]) -> tuple[float, ...]:
+def bolt_forces(
+    structure: BoltedStructure, preload: float | str | Mapping[str, float | str] | None
+) -> tuple[float, ...]:
     """Force of each bolt [N]. Raises InputError where one is missing, unknown or not positive."""
     names = [bolt.name for bolt in structure.bolts]
-    if not names:
+    if not names and structure.joints:
         raise InputError("the structure has no bolts, so nothing pulls its joints together; give it bolts=[Bolt(...)]")
+    if bool(names) is (preload is None):
+        raise InputError(f"preload = {shortened(preload)}; the bolts are {', '.join(map(repr, names)) or 'none'}")
+    if preload is None:
+        return ()
     if not isinstance(preload, Mapping):
         return (number(preload, "preload", "N", least=0),) * len(names)
     unknown = [name for name in preload if name not in names]

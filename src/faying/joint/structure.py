@@ -21,7 +21,7 @@ class Structure(BoltedStructure):
         mesh: Parts and faces.
         materials: One material for all parts, or part -> its material; a `Material`, or the name of one in the
             catalogue. They need a density.
-        joints: The joints between the parts.
+        joints: The joints between the parts; none for one part, or for parts that are bonded or supported.
         bolts: Bolts as beams, forces or meshed parts.
         supports: Faces that are fixed or on springs.
         masses: Point masses.
@@ -35,7 +35,7 @@ class Structure(BoltedStructure):
     @checked_call
     def solve(
         self,
-        preload: float | str | Mapping[str, float | str],
+        preload: float | str | Mapping[str, float | str] | None = None,
         *,
         modes: int = 10,
         damping: Literal["hysteretic", "viscous"] = "hysteretic",
@@ -46,7 +46,8 @@ class Structure(BoltedStructure):
         """Tighten the bolts and find the modes, as a study does.
 
         Args:
-            preload: Force of each bolt [N], or text with a unit such as "8 kN"; bolt -> force where they differ.
+            preload: Force of each bolt [N], or text with a unit such as "8 kN"; bolt -> force where they differ; None
+                for a structure without bolts.
             modes: How many elastic modes, 1 to 10,000.
             damping: Kind of loss of the joints.
             order: Names of the bolts in the order of tightening, any of them more than once; None pulls all at once.

@@ -38,7 +38,7 @@ def checked_preload(structure: BoltedStructure, assembly: Equilibrium, case: Pre
 
 def open_joints(structure: BoltedStructure, pressures: Sequence[Array]) -> list[str]:
     """Names of the joints that carry nothing, or next to nothing beside the others."""
-    least = NOTHING * max(float(p.max()) for p in pressures)
+    least = NOTHING * max((float(p.max()) for p in pressures), default=0.0)
     return [joint.name for joint, p in zip(structure.joints, pressures, strict=True) if p.max() <= least]
 
 

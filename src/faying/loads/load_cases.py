@@ -57,7 +57,7 @@ def load_cases(
             raise InputError("loads: a state has no load cases of its own; give loads=[Load(...)]")
         progress = Progress(STAGES + len(loads) * modes, report)
         return answers(of_state(what, modes), tuple(loads), progress)
-    plan = Study.read(what)
+    plan = Study.read_bolted(what)
     found = plan.load_cases if loads is None else tuple(loads)
     number = preload_index(plan.loads, preload)
     if not found:

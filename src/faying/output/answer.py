@@ -34,7 +34,7 @@ def answer(result: Result) -> Rows:
     middle = 0 if damped is None else _middle(damped)
     heads += [] if damped is None else [f"damping, {damped.levels[middle]:g} m/s2 [%]"]
     rows: Rows = [heads]
-    slopes = 1e3 * preload_slope(result.frequencies, result.loads) if several else np.zeros(len(result.bonded))
+    slopes = 1e3 * preload_slope(result.frequencies, result.loads) if several else np.zeros(result.frequencies.shape[1])
     ends = np.stack([interval.low[-1], interval.best[-1], interval.high[-1]], axis=1)
     for j, (low, best, high) in enumerate(ends.tolist()):
         cells = [str(j + 1), moves(result, j), f"{best:.{_digits(low, high)}f}", _interval(low, high)]
@@ -127,7 +127,7 @@ def gains(interval: Interval) -> dict[str, Array]:
     """How much narrower each mode's interval at the greatest preload is (m,) [-] with one source known better each."""
     width = interval.width[-1]
     known = {name: SCATTER[name] for name in interval.sources if SCATTER[name].remedy}
-    return {name: 1 - interval.narrowed({name: one.left}).width[-1] / width for name, one in known.items()}
+    return {name: 1 - interval.narrowed_width({name: one.left})[-1] / width for name, one in known.items()}
 
 
 def shares(result: Result) -> Rows:

@@ -211,6 +211,11 @@ class ReportFigure:
     mark: str = ""
 
 
+def _has_joints(result: Result) -> bool:
+    """Whether there are joints to draw."""
+    return bool(result.joints)
+
+
 def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
     def drawn(result: Result) -> Any:
         fig = new_figure(WIDE, 3.2)
@@ -243,18 +248,20 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
             draw=structure.pressures,
             caption="Pressure where the faces of each joint touch, at the least and the greatest preload. Grey: open; "
             "the line is the edge of contact.",
+            applies=_has_joints,
         ),
         ReportFigure(
             name="slip",
             draw=structure.slips,
             caption="Tangential displacement of the second face against the first while the bolts are tightened. Grey: "
             "open.",
-            applies=lambda result: result.slip is not None and float(result.slip.max()) > 0,
+            applies=lambda result: result.slip is not None and bool((result.slip > 0).any()),
         ),
         ReportFigure(
             name="law",
             draw=_on_axes(structure.law_curves),
             caption="Stiffness per area over the pressures that the joints reach at the greatest preload.",
+            applies=_has_joints,
         ),
         "surfaces",
         "conductance",
@@ -266,6 +273,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
             draw=structure.frequencies,
             caption="Frequency of each mode against preload. Band: 5 to 95 % of all that is not known, where the study "
             "asks for intervals, else the range that the law states. Dotted, where it is near: faces bonded.",
+            applies=_has_joints,
         ),
         "damping",
         ReportFigure(

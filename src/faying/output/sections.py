@@ -90,6 +90,12 @@ def _answer(result: Result) -> tuple[ReportSection, ...]:
     )
 
 
+JOINED = (
+    "Loss factors come from complex modes with {} loss in the joints. Free: faces apart. Bonded: no gap and no slip in "
+    "any joint."
+)
+
+
 def _modes(result: Result) -> tuple[ReportSection, ...]:
     """The modes under the study's laws, and under what could stand in place of them."""
     rigid = f" Rigid-body values: up to {result.rigid.max():.1e} Hz." if len(result.rigid) else ""
@@ -98,9 +104,8 @@ def _modes(result: Result) -> tuple[ReportSection, ...]:
         ReportSection(
             name="modes",
             rows=table.modes(result),
-            title="Modes at every preload",
-            below=f"Loss factors come from complex modes with {result.damping} loss in the joints. Free: faces apart. "
-            f"Bonded: no gap and no slip in any joint.{rigid}",
+            title="Modes at every preload" if result.bolts else "Modes as modelled",
+            below=f"{JOINED.format(result.damping) if result.joints else ''}{rigid}",
         ),
         ReportSection(
             name="ranges",

@@ -34,13 +34,16 @@ def modes(result: Result) -> Rows:
     """One row per mode: free, then each preload with its loss factor where one is predicted, then bonded."""
     lost = bool(np.isfinite(result.loss_factors).any())
     heads = [f"{load_text(load)} [Hz]{' (loss)' * lost}" for load in result.loads]
-    rows: Rows = [["mode", "free [Hz]", *heads, "bonded [Hz]"]]
-    for j in range(len(result.bonded)):
+    bounded = result.free is not None and result.bonded is not None
+    rows: Rows = [["mode", *["free [Hz]"] * bounded, *heads, *["bonded [Hz]"] * bounded]]
+    for j in range(result.frequencies.shape[1]):
         cells = [
             f"{f:.2f} ({eta:.1e})" if lost else f"{f:.2f}"
             for f, eta in zip(result.frequencies[:, j], result.loss_factors[:, j], strict=True)
         ]
-        rows.append([str(j + 1), f"{result.free[j]:.2f}", *cells, f"{result.bonded[j]:.2f}"])
+        if result.free is not None and result.bonded is not None:
+            cells = [f"{result.free[j]:.2f}", *cells, f"{result.bonded[j]:.2f}"]
+        rows.append([str(j + 1), *cells])
     return rows
 
 
@@ -85,7 +88,7 @@ def above_range(result: Result) -> Rows:
     if result.above_range_frequencies is None or result.above_range_loss_factors is None:
         return []
     rows: Rows = [["mode", *(f"{load_text(load)} constant .. bonded [Hz] (loss)" for load in result.loads)]]
-    for j in range(len(result.bonded)):
+    for j in range(result.frequencies.shape[1]):
         cells = []
         for i in range(len(result.loads)):
             low, high = result.frequencies[i, j], result.above_range_frequencies[i, j]
@@ -203,6 +206,8 @@ def joints(result: Result) -> Rows:
 
     The slipping share has a column only where something slips; the residual force is that of the whole.
     """
+    if not result.joints:
+        return []
     slips = bool(np.any(result.slipping > 0))
     heads = ["preload", "joint", "greatest p [MPa]", "mean p [MPa]", "open [%]", *["slipping [%]"] * slips]
     rows: Rows = [[*heads, "total k_n [N/m]", "total k_t [N/m]", "imbalance"]]
@@ -235,8 +240,8 @@ def parts(result: Result) -> Rows:
 
 
 def bolts(result: Result) -> Rows:
-    """One row per preload: the force in each bolt when all are tight; empty where `bolting` has them."""
-    if not result.tightening and result.bolt_numbers is not None:
+    """One row per preload: force in each bolt when all are tight; empty without bolts, or where `bolting` has it."""
+    if not result.bolts or (not result.tightening and result.bolt_numbers is not None):
         return []
     rows: Rows = [["preload", *(f"{name} [kN]" for name in result.bolts)]]
     for load, forces in zip(result.loads, result.bolt_forces, strict=True):
@@ -307,7 +312,7 @@ def modal_forces(result: Result) -> Rows:
     if b is None or not np.isfinite(b.modal_force).any():
         return []
     rows: Rows = [["mode", *(f"{name} [{unit}]" for name in result.bolts for unit in ("N/um", "N/(m/s2)"))]]
-    for j in range(len(result.bonded)):
+    for j in range(result.frequencies.shape[1]):
         cells = zip(b.modal_force[-1, j], b.modal_force_by_acceleration[-1, j], strict=True)
         rows.append([str(j + 1), *(text for f, a in cells for text in (_or_dash(1e-6 * f, ".3g"), _or_dash(a, ".3g")))])
     return rows

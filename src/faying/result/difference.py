@@ -140,7 +140,7 @@ class RunDifference(Summary):
 
     def joint_rows(self) -> Rows:
         """Rows for each joint that both have, with a head: mean and greatest pressure, open share, stiffness."""
-        rows = [["joint", "what", "first", "second", "change"]]
+        rows = [["joint", "what", "first", "second", "change"]] if self.joints else []
         for name in self.joints:
             first, second = self.of_joint(name)
             for what, unit, scale, form in (
@@ -209,7 +209,7 @@ def compare_runs(first: Result, second: Result, preload: float | str | None = No
         shared = shared_preloads(first, second)
         loads = shared[-1] if shared else (len(first.loads) - 1, len(second.loads) - 1)
     at = first.loads[loads[0]], second.loads[loads[1]]
-    if abs(at[1] / at[0] - 1) > SAME_LOAD:
+    if abs(at[1] - at[0]) > SAME_LOAD * at[0]:
         notes.append(f"the preloads differ: {load_text(at[0])} in the first run, {load_text(at[1])} in the second")
     modes, alike, why = _paired(first, second, loads)
     if why:

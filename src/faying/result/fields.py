@@ -15,7 +15,7 @@ from faying.misuse import checked_call, shortened
 from faying.netcdf import Attribute, Group, Variable
 from faying.style import Summary
 from faying.typing import Array
-from faying.units import show
+from faying.units import load_text, show
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -336,9 +336,9 @@ def with_preload(tree: Group) -> Group:
 
 
 def load_texts(loads: Array) -> tuple[str, ...]:
-    """Loads [N] in words, each different from the others: "8 kN"."""
+    """Loads [N] in words, each different from the others: "8 kN"; "no preload" where there is none."""
     for digits in range(4, 17):
-        words = tuple(show(float(load), "N", digits=digits) for load in loads)
+        words = tuple(show(float(load), "N", digits=digits) if load else load_text(load) for load in loads)
         if len(set(words)) == len(words):
             return words
     return tuple(repr(float(load)) for load in loads)

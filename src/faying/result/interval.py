@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import final
+from typing import Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from faying.style import Summary
 from faying.typing import Array
 
-OF_PARTS = ("mesh", "structure", "mode")  # sources that no stiffness of a joint bounds
+OF_PARTS = ("mesh", "structure", "parts", "mode")  # sources that no stiffness of a joint bounds
 MAX_ROWS = 10  # of a summary
 MIN_SQUARE = 1e-300  # where nothing moves a frequency
 
@@ -27,9 +27,8 @@ class Interval(Summary):
     Args:
         sources: what is not known, s names.
         offsets: of ln f (s, 2, loads, modes).
-        median: frequencies with the median of each source [Hz] (loads, modes).
-        free, bonded: frequencies [Hz] (modes,) with the faces apart and bonded, which no stiffness of a joint passes;
-            what is not known of the parts does.
+        low, best, high: 5 %, the best estimate (the median of all that is not known) and 95 % [Hz] (loads, modes).
+        moved: by how much what is known of the parts moves ln f, and what bounds it (loads, modes) [-].
 
     Source:
         First-order propagation: JCGM 100:2008 (GUM), equation (10), on each side by itself.
@@ -37,30 +36,31 @@ class Interval(Summary):
 
     sources: tuple[str, ...]
     offsets: Array
-    median: Array
-    free: ArrayLike = 0.0
-    bonded: ArrayLike = np.inf
+    low: Array
+    best: Array
+    high: Array
+    moved: ArrayLike = 0.0
 
-    @property
-    def low(self) -> Array:
-        """5 % [Hz] (loads, modes)."""
-        return self._within(self.median * np.exp(-self._distances[0]))
+    @classmethod
+    def about(cls, best: Array, offsets: Mapping[str, Array], moved: ArrayLike = 0.0) -> Self:
+        """From the best estimates [Hz] (loads, modes), and what each source moves ln f by (2, loads, modes)."""
+        ends = np.stack(list(offsets.values()))
+        made = cls(sources=tuple(offsets), offsets=ends, low=best, best=best, high=best, moved=moved)
+        down, up = made._distances
+        return replace(made, low=best * np.exp(-down), high=best * np.exp(up))
 
-    @property
-    def best(self) -> Array:
-        """The best estimate, the median of all that is not known [Hz] (loads, modes)."""
-        return self._within(self.median)
+    def between(self, free: Array | None, bonded: Array | None) -> "Interval":
+        """The interval between frequencies [Hz] (modes,) with free and with bonded faces as modelled, if these are known.
 
-    @property
-    def high(self) -> Array:
-        """95 % [Hz] (loads, modes)."""
-        return self._within(self.median * np.exp(self._distances[1]))
-
-    def _within(self, frequencies: Array) -> Array:
-        """Frequencies between those of free and of bonded faces, but for what is not known of the parts."""
+        No stiffness of a joint passes them; what is known and not known of the parts does.
+        """
+        if free is None or bonded is None:
+            return self
         of_parts = [k for k, name in enumerate(self.sources) if name in OF_PARTS]
-        room = np.exp(np.sqrt(self._squares[of_parts].sum(axis=0)) / 2)
-        return np.asarray(np.clip(frequencies, np.asarray(self.free) / room, np.asarray(self.bonded) * room))
+        room = np.sqrt(self._squares[of_parts].sum(axis=0)) / 2
+        least, most = free * np.exp(self.moved - room), bonded * np.exp(self.moved + room)
+        low, best, high = (np.clip(one, least, most) for one in (self.low, self.best, self.high))
+        return replace(self, low=low, best=best, high=high)
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return 5 %, the best estimate and 95 % of each mode at the greatest preload."""
@@ -93,10 +93,10 @@ class Interval(Summary):
         squares = self._squares
         return np.asarray(squares / np.maximum(squares.sum(axis=0), MIN_SQUARE))
 
-    def narrowed(self, left: Mapping[str, float]) -> "Interval":
-        """The interval where sources are known better.
+    def narrowed_width(self, left: Mapping[str, float]) -> Array:
+        """The width (loads, modes) [-] where sources are known better.
 
         left: what is left of the spread of a source, by its name [-].
         """
         factors = np.array([left.get(name, 1.0) for name in self.sources])[:, None, None, None]
-        return replace(self, offsets=self.offsets * factors)
+        return replace(self, offsets=self.offsets * factors).width

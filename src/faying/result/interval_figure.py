@@ -22,6 +22,7 @@ SOURCES = {
     "preload": COLOURS[4],
     "mesh": "#4d4d4d",
     "structure": COLOURS[7],
+    "parts": COLOURS[1],
     "mode": "#d9d9d9",
 }
 
@@ -37,7 +38,7 @@ def intervals(result: "Result") -> Any:
     interval = result.interval
     if interval is None:
         raise InputError("the result has no intervals; run it with [modes] intervals = true")
-    count = len(result.bonded)
+    count = result.frequencies.shape[1]
     fig = new_figure(WIDE, 1.2 + 0.21 * count)
     left, right = fig.subplots(1, 2, sharey=True, gridspec_kw={"width_ratios": (1.35, 1)})
     value, y = result.frequencies[-1], np.arange(count)
@@ -45,12 +46,14 @@ def intervals(result: "Result") -> Any:
     left.barh(y, high - low, left=low, height=0.55, color=COLOURS[0], alpha=0.3, lw=0, label="5 to 95 %")
     left.plot(best, y, "o", color=COLOURS[0], ms=4, label="best estimate")
     left.plot(np.zeros(count), y, "|", color="black", ms=9, mew=1.4, label="as modelled")
-    left.plot(100 * (result.bonded / value - 1), y, "|", color=COLOURS[1], ms=9, mew=1.4, label="faces bonded")
     _test(left, result)
     shown = _shown(left, low, high)
-    far = [k for k in range(count) if 100 * (result.bonded[k] / value[k] - 1) > shown[1]]
-    if far:
-        left.plot([shown[1]] * len(far), far, ">", color=COLOURS[1], ms=4, clip_on=False)
+    if result.bonded is not None:
+        bonded = 100 * (result.bonded / value - 1)
+        left.plot(bonded, y, "|", color=COLOURS[1], ms=9, mew=1.4, label="faces bonded")
+        far = bonded > shown[1]
+        if far.any():
+            left.plot(np.full(far.sum(), shown[1]), y[far], ">", color=COLOURS[1], ms=4, clip_on=False)
     left.set_xlim(shown)
     left.set_yticks(y, [f"{k + 1}: {f:.0f} Hz" for k, f in enumerate(interval.best[-1])])
     left.invert_yaxis()

@@ -47,8 +47,8 @@ class Result(RunRecord):
             InputError: The number of modes or of axes does not fit.
         """
         if modes < 1:
-            raise InputError(f"modes = {shortened(modes)}; give how many modes, 1 to {len(self.free)}")
-        return frequency_axes(self, min(modes, len(self.free)), ax)
+            raise InputError(f"modes = {shortened(modes)}; give how many modes, 1 to {self.frequencies.shape[1]}")
+        return frequency_axes(self, min(modes, self.frequencies.shape[1]), ax)
 
     @checked_call
     def save_vtu(self, path: str | Path) -> list[Path]:

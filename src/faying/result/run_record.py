@@ -130,8 +130,8 @@ class RunRecord(Recorded):
     loss_error: Array = variable(
         "load mode", "1", "estimated relative error of the loss factor", "modes/loss_factor_error"
     )
-    free: Array = variable("mode", "Hz", "frequency with the faces apart", "modes/", shown="free")
-    bonded: Array = variable("mode", "Hz", "frequency with the faces bonded", "modes/", shown="bonded")
+    free: Array | None = optional("mode", "Hz", "frequency with the faces apart", "modes/", shown="free")
+    bonded: Array | None = optional("mode", "Hz", "frequency with the faces bonded", "modes/", shown="bonded")
     rigid: Array = variable("rigid_motion", "Hz", "largest frequency of each rigid motion, ideally 0", "modes/")
     mac: Array = variable(
         "load mode mode_other", "1", "MAC by mass of the modes at the first load with those at each", "modes/"
@@ -333,22 +333,24 @@ class RunRecord(Recorded):
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and what the result says, with the first modes."""
-        head = (
-            f"Result {self.title!r}: {self.unknowns:,} unknowns, {len(self.free)} modes at {len(self.loads)} preloads"
-        )
+        head = f"Result {self.title!r}: {self.unknowns:,} unknowns, {self.frequencies.shape[1]} modes"
+        head += f" at {len(self.loads)} preloads" if self.bolts else ""
         laws = dict.fromkeys(str(law.get("law", law.get("name", ""))) for law in self.laws)
-        rows = {"joints": listed(self.joints) + (f" ({listed(filter(None, laws))})" if any(laws) else "")}
-        rows["bolts"] = listed(self.bolts)
+        joints = listed(self.joints) + (f" ({listed(filter(None, laws))})" if any(laws) else "")
+        rows = {"joints": joints, "bolts": listed(self.bolts)} if self.joints else {"parts": listed(self.parts)}
         rows |= {"dowels": listed(self.dowels)} if self.dowels else {}
         few = list(range(len(self.loads))) if len(self.loads) <= MAX_LOADS else [0, len(self.loads) // 2, -1]
         words = load_texts(self.loads)
-        rows["frequencies"] = f"[Hz] free | {' | '.join(words[k] for k in few)} | bonded"
-        shown = len(self.free) if len(self.free) <= MAX_MODES else MAX_MODES - 1
+        between = self.free is not None and self.bonded is not None
+        rows["frequencies"] = f"[Hz] {' | '.join(['free'] * between + [words[k] for k in few] + ['bonded'] * between)}"
+        shown = self.frequencies.shape[1] if self.frequencies.shape[1] <= MAX_MODES else MAX_MODES - 1
         for mode in range(shown):
-            cells = (self.free[mode], *(self.frequencies[k, mode] for k in few), self.bonded[mode])
+            cells = [self.frequencies[k, mode] for k in few]
+            if self.free is not None and self.bonded is not None:
+                cells = [self.free[mode], *cells, self.bonded[mode]]
             rows[f"mode {mode + 1}"] = " | ".join(f"{value:8.2f}" for value in cells)
-        if len(self.free) > shown:
-            rows["more modes"] = f"{len(self.free) - shown}, up to {self.frequencies[-1, -1]:.2f} Hz"
+        if self.frequencies.shape[1] > shown:
+            rows["more modes"] = f"{self.frequencies.shape[1] - shown}, up to {self.frequencies[-1, -1]:.2f} Hz"
         if self.comparison is not None:
             c = self.comparison
             error = np.abs(c.predicted / c.frequencies - 1)
@@ -431,9 +433,10 @@ class RunRecord(Recorded):
         """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps and shapes are left out."""
         out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver}
         out["factor_memory"] = {"unit": "B", "values": self.factor_memory}
-        out |= in_units(self, without=MAPS)
-        out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
-        out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
+        out |= in_units(self, without=(*MAPS, *["joint"] * (not self.joints), *["bolt"] * (not self.bolts)))
+        if self.joints:
+            out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
+            out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
         out["interval_sources"], out["alternatives"] = list(self.interval_sources), list(self.alternatives)
         out["parts"] = list(self.parts)
         out["dowels"] = list(self.dowels)
@@ -455,7 +458,7 @@ class RunRecord(Recorded):
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
-        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, len(self.free) + 1)}
+        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, self.frequencies.shape[1] + 1)}
         out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         out |= {"part": self.parts} if self.parts else {}
         out |= {"dowel": self.dowels} if self.dowels else {}
@@ -465,15 +468,10 @@ class RunRecord(Recorded):
     @property
     def interval(self) -> Interval | None:
         """Best estimate and interval of each frequency, and what makes it; None in a result without one."""
-        if self.interval_offsets is None or self.interval_best is None:
+        low, best, high = self.interval_low, self.interval_best, self.interval_high
+        if self.interval_offsets is None or low is None or best is None or high is None:
             return None
-        return Interval(
-            sources=self.interval_sources,
-            offsets=self.interval_offsets,
-            median=self.interval_best,
-            free=self.free,
-            bonded=self.bonded,
-        )
+        return Interval(sources=self.interval_sources, offsets=self.interval_offsets, low=low, best=best, high=high)
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
@@ -484,7 +482,7 @@ class RunRecord(Recorded):
         columns: list[tuple[str, Array]] = []
         for name, meta in declared(type(self)).items():
             head, values = meta.shown.column, getattr(self, name)
-            if not head or values is None:
+            if not head or values is None or not (self.joints or np.isfinite(values).any()):
                 continue
             if "level" in meta.dims:
                 levels = () if self.levels is None else self.levels
@@ -496,7 +494,7 @@ class RunRecord(Recorded):
                 columns.append((f"{head} [{meta.unit_text}]", np.broadcast_to(at_modes, self.frequencies.shape)))
         rows: list[list[Any]] = [["preload [N]", "mode", *(head for head, _ in columns)]]
         for i, load in enumerate(self.loads):
-            for j in range(len(self.bonded)):
+            for j in range(self.frequencies.shape[1]):
                 row = [float(values[i, j]) for _, values in columns]
                 rows.append([f"{load:.6g}", j + 1, *("" if np.isnan(v) else f"{v:.8g}" for v in row)])
         return csv_text(rows)

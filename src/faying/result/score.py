@@ -43,7 +43,8 @@ class Score:
         if len(test) > 1:
             ratio = np.vstack([np.full((1, test.shape[1]), np.nan), c.predicted[1:] / c.predicted[:-1]])
             guesses |= {"test at the load before": before, "that times Faying's ratio": before * ratio}
-        guesses |= {"faces bonded": result.bonded[modes], "faces apart": result.free[modes]}
+        if result.bonded is not None and result.free is not None:
+            guesses |= {"faces bonded": result.bonded[modes], "faces apart": result.free[modes]}
         if c.published is not None:
             guesses[c.published_name] = c.published
         inside = None

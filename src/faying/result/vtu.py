@@ -58,7 +58,7 @@ def _grid(result: RunRecord, maps: list[Any], load: int) -> str:
         return np.concatenate([shape, *(shape[one.parents].mean(axis=1) for _, one in found)])
 
     points: dict[str, Any] = {}
-    for mode in range(len(result.bonded)):
+    for mode in range(result.frequencies.shape[1]):
         points[f"mode {mode + 1} real"] = moved(result.shapes[load, mode])
         if result.shapes_imaginary is not None:
             points[f"mode {mode + 1} imaginary"] = moved(result.shapes_imaginary[load, mode])

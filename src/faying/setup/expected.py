@@ -53,8 +53,8 @@ class Expected:
         """
         share = 1.0 + LOAD * (len(study.loads) - 1) + OTHER * len(study.alternatives)
         share += SOLID if any(bolt.part is not None for bolt in study.bolts) else 0.0
-        share -= 0.0 if study.modes.levels else LEVELS
-        share -= WAVES if any(joint.form is not None for joint in study.joints) else 0.0
+        share -= 0.0 if study.modes.levels and study.joints else LEVELS
+        share -= WAVES if not study.joints or any(joint.form is not None for joint in study.joints) else 0.0
         seconds = START + share * EACH * unknowns**GROWTH
         if study.backbone is not None:
             seconds += CURVE * len(study.loads) * max(len(study.backbone.laws), 1)

@@ -9,7 +9,6 @@ import numpy as np
 from faying.bolt.threads import WASHERS
 from faying.decks.meshfile import read_mesh, read_pretensions
 from faying.decks.raw import Pretension
-from faying.errors import InputError
 from faying.fe.mesh import Mesh
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.mesh_facts import mesh_facts
@@ -32,7 +31,6 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
 
     Raises:
         ReadError, InputError: as `read_mesh`.
-        InputError: it holds one part.
     """
     mesh = read_mesh(path, unit=unit)
     assert unit is not None
@@ -40,8 +38,6 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
     if sets:
         mesh = read_mesh(path, unit=unit, parts=sets)
     facts = mesh_facts(mesh)
-    if len(facts.parts) < 2:
-        raise InputError(f"{facts.file} has one part, {facts.parts[0].name!r}; a joint needs two that touch")
     contacts = [
         contact
         for contact in touching(facts)
@@ -59,7 +55,7 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
     snap = 0.0 if widest <= TOUCHING * facts.size else rounded(1.01 * widest, 2, up=True)
     if snap:
         remarks.append(f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)")
-    if not contacts:
+    if not contacts and len(facts.parts) > 1:
         remarks.append("no two named faces touch: name the faces of the joints in the file, one on each side")
     return Proposal(
         facts=facts,

@@ -56,7 +56,8 @@ class Written(Summary):
         counts = {"joint": len(proposal.joints), "bolt": len(proposal.bolts), "dowel": len(proposal.dowels)}
         words = [f"{count} {kind}{'s' * (count != 1)}" for kind, count in counts.items() if count or kind != "dowel"]
         more = f" and {len(proposal.left_out)} more that are not meshed" if proposal.left_out else ""
-        return ", ".join([f"{len(proposal.facts.parts)} parts{more}", *words])
+        parts = "1 part" if proposal.alone else f"{len(proposal.facts.parts)} parts"
+        return ", ".join([f"{parts}{more}", *words])
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return what was found, the files, and the first of what was assumed."""
@@ -104,7 +105,7 @@ def new_study(
     unit: str | None = None,
     force: bool = False,
 ) -> Written:
-    """Write a commented study of an assembly: the joints, bolts, dowels and seats that its geometry has.
+    """Write a commented study of a part or an assembly: the joints, bolts, dowels and seats that its geometry has.
 
     Args:
         geometry: STEP file, or mesh file of another program whose faces have names.
@@ -162,7 +163,8 @@ def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force:
         raise InputError(f'material "{unknown[0]}" is not in the catalogue; give one of {", ".join(CATALOGUE)}')
     if answers.scan is not None and not answers.scan.is_file():
         raise InputError(f"no scan {answers.scan}")
-    made = [out.name] if answers.scan is not None else [out.name, scan_name(out)]
+    synthetic = answers.scan is None and not proposal.alone
+    made = [out.name, *[scan_name(out)] * synthetic]
     there = [out.parent / name for name in made if (out.parent / name).exists()]
     if there and not force:
         raise InputError(
@@ -171,7 +173,7 @@ def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force:
     text, assumed = study_text(proposal, step, out, answers)
     with together(out.parent, "give another place (--out)") as folder:
         write_text(folder / out.name, text)
-        if answers.scan is None:
+        if synthetic:
             write_atomically(folder / scan_name(out), surface)
     return Written(files=tuple(out.parent / name for name in made), proposal=proposal, assumed=tuple(assumed))
 
@@ -188,10 +190,10 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         _head(proposal, step, out),
         _geometry(proposal, _relative(step, out)),
         _parts(proposal, answers, assumed),
-        _surface(out, answers, assumed),
-        _joints(proposal) or NO_JOINT,
+        "" if proposal.alone else _surface(out, answers, assumed),
+        _joints(proposal) or ("" if proposal.alone else NO_JOINT),
         *(_bolt(bolt, answers) for bolt in proposal.bolts),
-        "" if proposal.bolts else NO_BOLT,
+        "" if proposal.bolts or proposal.alone else NO_BOLT,
         *map(_dowel, proposal.dowels),
         SUPPORT,
         "[modes]\ncount = 10                     # elastic modes\n",
@@ -275,7 +277,10 @@ def selector_text(selector: Selector) -> str:
 
 
 def _parts(proposal: Proposal, answers: Answers, assumed: list[str]) -> str:
-    lines = [f"# The catalogue has {', '.join(CATALOGUE)}; [material.NAME] describes one of your own."]
+    lines = [
+        f"# The catalogue has {', '.join(CATALOGUE)}; [material.NAME] describes one of your own.",
+        '# Of a part weighed and rung alone: mass = "1.234 kg", frequencies = ["512 Hz", "1.4 kHz"], its free modes.',
+    ]
     guessed = []
     for part in proposal.facts.parts:
         material = answers.materials.get(part.name)

@@ -110,6 +110,11 @@ class Proposal:
     dowels: tuple[DowelProposal, ...] = ()
 
     @property
+    def alone(self) -> bool:
+        """Whether it is one part, which has no joint."""
+        return len(self.facts.parts) == 1
+
+    @property
     def unknowns(self) -> int:
         """Unknowns of the mesh file, or of the mesh as counted on other structures."""
         return self.counted or unknowns_of(self.facts, self.size)
@@ -123,10 +128,11 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         path: the STEP file, to measure how far parts lie apart.
 
     Raises:
-        InputError: a single part, or no parts that touch.
+        InputError: several parts, of which none touch.
     """
-    if len(facts.parts) < 2:
-        raise InputError(f"{facts.file} has one part, {facts.parts[0].name!r}; a joint needs two that touch")
+    if len(facts.parts) == 1:
+        size, words = mesh_size(facts, set())
+        return Proposal(facts=facts, faces={}, joints=(), bolts=(), size=size, snap=0.0, left_out=(), remarks=(words,))
     fasteners = find_fasteners(facts, touching(facts))
     facts = facts.without(fasteners.left_out)
     alone = _alone(facts, path)

@@ -8,7 +8,7 @@ from typing import Any, Self
 from faying.bolt.bolt import Bolt
 from faying.bolt.dowel import Dowel
 from faying.bolt.solid_bolt import SolidBolt
-from faying.errors import ReadError
+from faying.errors import InputError, ReadError
 from faying.joint.attachments import PointMass, Support
 from faying.joint.modal import ModesChoice
 from faying.joint.preload_case import PreloadCase
@@ -25,7 +25,7 @@ from faying.study.keys.geometry import GeometryChoice, read_geometry
 from faying.study.keys.joint import JointChoice, read_joints
 from faying.study.keys.law import LAW, LawChoice
 from faying.study.keys.load import read_loads
-from faying.study.keys.material import read_materials, read_parts
+from faying.study.keys.material import PartTestChoice, read_materials, read_parts
 from faying.study.keys.solution import ResponseChoice, read_modes, read_order
 from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice
@@ -56,6 +56,7 @@ class Study(Summary):
         alternatives: other laws and surfaces whose modes stand beside those of the study.
         bolt_sheets: what is said for the sheets of the bolts.
         load_cases: what acts on the preloaded structure.
+        part_tests: what was measured of parts alone.
         uncertain: which numbers scatter; None where the file does not say.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
     """
@@ -84,6 +85,7 @@ class Study(Summary):
     name: str = PLAIN
     bolt_sheets: tuple[BoltSheetChoice, ...] = ()
     load_cases: tuple[Load, ...] = ()
+    part_tests: Mapping[str, PartTestChoice] = field(default_factory=dict)
     text: str = field(default="", repr=False)
     data: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     files: tuple[Path, ...] = ()
@@ -95,8 +97,8 @@ class Study(Summary):
         rows = {
             "geometry": self.geometry.file.name,
             "parts": ", ".join(f"{part} ({material})" for part, material in self.parts.items()),
-            "joints": f"{', '.join(joint.name for joint in self.joints)} ({law})",
-            "bolts": f"{', '.join(bolt.name for bolt in self.bolts)}, {preloads} kN",
+            **({"joints": f"{', '.join(joint.name for joint in self.joints)} ({law})"} if self.joints else {}),
+            **({"bolts": f"{', '.join(bolt.name for bolt in self.bolts)}, {preloads} kN"} if self.bolts else {}),
             **({"dowels": ", ".join(dowel.name for dowel in self.dowels)} if self.dowels else {}),
             "supports": str(len(self.supports)) if self.supports else "none: free",
             "modes": str(self.modes.count),
@@ -117,6 +119,7 @@ class Study(Summary):
             "load cases": self.load_cases,
             "bolt sheets": self.bolt_sheets,
             "scatter": self.uncertain,
+            "tests of parts": self.part_tests,
         }
         return [name for name, there in every.items() if there]
 
@@ -183,24 +186,30 @@ class Study(Summary):
         return replace(study, name=file.stem)
 
     @classmethod
+    def read_bolted(cls, path: "str | Path | Study") -> "Study":
+        """As `read`, for work on joints under preload. Raises InputError also where there is none."""
+        study = cls.read(path)
+        if not study.joints:
+            raise InputError("this needs joints that bolts press together, and the study has none; see faying run")
+        return study
+
+    @classmethod
     def from_dict(cls, data: dict[str, Any], *, folder: Path, where: str = "study", text: str = "") -> Self:
         """Check a study given as nested dictionaries (as TOML gives them); file names are relative to `folder`."""
         faults = Faults(folder=folder)
-        written = data
-        data, inside = extracted(data)
-        top = Table(data, "", faults, STUDY)
+        given, inside = extracted(data)
+        top = Table(given, "", faults, STUDY)
         title = top.get("title")
         materials = read_materials(top)
         geometry = read_geometry(top)
-        parts = read_parts(top, materials)
+        parts, part_tests = read_parts(top, materials)
         joints, bonds = read_joints(top)
         law = LawChoice.of(top.table("law") or Table({}, "law", faults, LAW.keys))
         surface = top.inner("surface", SurfaceChoice.of)
         alternatives = tuple(AlternativeChoice.of(t, i) for i, t in enumerate(top.tables("alternative")))
         backbone = top.inner("backbone", BackboneChoice.of)
-        _note_lacking(faults, joints, law, surface)
-        _note_lacking_alternatives(faults, joints, (law, surface), alternatives, backbone)
-        bolts, forces = _bolts(top, materials)
+        _note_lacking_laws(faults, joints, (law, surface), alternatives, backbone)
+        bolts, forces = _bolts(top, materials, joints)
         cases = read_loads(top.tables("load"))
         names = [bolt.name for bolt in bolts]
         sheets = read_bolt_sheets(top.tables("bolt_sheet"), names, [load.name for load in cases])
@@ -209,12 +218,11 @@ class Study(Summary):
         modes = top.inner("modes", read_modes) or ModesChoice()
         order = top.inner("tightening", lambda table: read_order(table, names))
         response = top.inner("response", ResponseChoice.of)
-        test, hammer = read_test(top, max(forces, key=len, default=()))
+        test, hammer = read_test(top, max(forces, key=len, default=(0.0,)))
         geometry = _with_selectors(geometry, faults)
-        loads = max(map(len, forces), default=1)
-        known = Known(joints=joints, bolts=names, loads=loads, materials=materials, parts=parts)
-        scattered = top.inner("uncertain", lambda table: table.data)
-        uncertain = read_uncertain(scattered, inside, known, faults)
+        count = max(map(len, forces), default=1)
+        known = Known(joints=joints, bolts=names, loads=count, materials=materials, parts=parts)
+        uncertain = read_uncertain(top.inner("uncertain", lambda table: table.data), inside, known, faults)
         top.close()
         faults.raise_if_any(where)
         return cls(
@@ -223,12 +231,15 @@ class Study(Summary):
             materials=materials,
             geometry=geometry,
             parts=parts,
+            part_tests=part_tests,
             surface=surface,
             law=law,
             joints=joints,
             bonds=bonds,
             bolts=bolts,
-            preloads=tuple(PreloadCase(forces=one, order=order) for one in zip(*forces, strict=True)),
+            preloads=tuple(
+                PreloadCase(forces=one, order=order) for one in (zip(*forces, strict=True) if forces else [()])
+            ),
             modes=modes,
             response=response,
             test=test,
@@ -242,21 +253,36 @@ class Study(Summary):
             supports=supports,
             masses=masses,
             text=text,
-            data=written,
+            data=data,
             files=tuple(dict.fromkeys(faults.files)),
         )
 
 
 def _bolts(
-    top: Table, materials: dict[str, Material]
+    top: Table, materials: dict[str, Material], joints: tuple[JointChoice, ...]
 ) -> tuple[tuple[Bolt | SolidBolt, ...], tuple[tuple[float, ...], ...]]:
-    """Read [[bolt]], with the forces [N] of each; a fault is noted where they have different numbers of preloads."""
+    """Read [[bolt]], with the forces [N] of each; faults: other numbers of preloads, joints without bolts, or none."""
+    _note_unpressed(top, joints)
     read = [read_bolt(t, i, materials) for i, t in enumerate(top.tables("bolt"))]
     counts = {len(forces) for _, forces in read if forces}
     if len(counts) > 1:
         many = " and ".join(map(str, sorted(counts)))
         top.faults.add(f"the bolts have {many} preloads; give each bolt the same number")
     return tuple(bolt for bolt, _ in read if bolt is not None), tuple(forces for _, forces in read if forces)
+
+
+def _note_unpressed(top: Table, joints: tuple[JointChoice, ...]) -> None:
+    """Note joints without a bolt, a bolt without a joint, and what is asked of joints where there are none."""
+    if joints and "bolt" not in top.data:
+        top.faults.add(
+            "[[bolt]] is missing: nothing presses the joints; give bonded = true to those that are welded or glued"
+        )
+    if not joints:
+        top.faults.lines += [
+            f"{key} needs a [[joint]] that bolts press together, and the study has none"
+            for key in ("bolt", "alternative", "backbone", "tightening")
+            if key in top.data
+        ]
 
 
 def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
@@ -267,14 +293,15 @@ def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
     return replace(geometry, face={**geometry.face, **faults.selectors})
 
 
-def _note_lacking_alternatives(
+def _note_lacking_laws(
     faults: Faults,
     joints: tuple[JointChoice, ...],
     shared: tuple[LawChoice, SurfaceChoice | None],
     alternatives: tuple[AlternativeChoice, ...],
     backbone: BackboneChoice | None,
 ) -> None:
-    """Note what the laws of [[alternative]] and [backbone] do not find in the surfaces."""
+    """Note what the laws of the study, of [[alternative]] and of [backbone] do not find in the surfaces."""
+    _note_lacking(faults, joints, *shared)
     changes = [
         (f"alternative[{number}]: ", other.law, other.surface) for number, other in enumerate(alternatives, start=1)
     ]

@@ -81,7 +81,7 @@ def sweep(
     Raises:
         InputError: axes that do not fit the study, leftovers of another sweep.
     """
-    study = Study.read(study)
+    study = Study.read_bolted(study)
     report = report or silent
     _check(study, tolerance)
     report("surface", 0, 0)

@@ -100,8 +100,6 @@ def read_joints(top: Table) -> tuple[tuple[JointChoice, ...], tuple[JointChoice,
     """Take all [[joint]]: those that bolts press together, and those that are bonded."""
     every = [JointChoice.of(table, index) for index, table in enumerate(top.tables("joint"))]
     joints, bonds = (tuple(joint for joint in every if joint.bonded is bonded) for bonded in (False, True))
-    if bonds and not joints:
-        top.faults.add("every [[joint]] is bonded; Faying needs one at least that bolts press together")
     again = [joint.name for k, joint in enumerate(every) if joint.name in {one.name for one in every[:k]}]
     if bonds and again:
         top.faults.add(f"two joints are called {again[0]!r}; give each a name of its own")

@@ -1,13 +1,17 @@
 """[material.NAME] and [part.NAME]: what the parts are made of."""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import CATALOGUE, MOST_FRICTION, STIFFEST, Material
-from faying.study.declaration.declared import NAME, REQUIRED, Declared, Inner, Key
+from faying.study.declaration.declared import NAME, QUANTITY, REQUIRED, Declared, Inner, Key, listed
 from faying.study.declaration.reader import Table
+from faying.study.declaration.values import quantity
+from faying.study.keys.test import QUANTITIES as FRF_QUANTITIES
 
 MODULI = (1e3, 2e12)  # Pa: gels and diamond
 
@@ -36,10 +40,26 @@ def named_material(table: Table, materials: Mapping[str, Material], who: str) ->
     return None
 
 
-def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
-    """Return the name of the material of each part."""
+@dataclass(frozen=True, kw_only=True)
+class PartTestChoice:
+    """What was measured of a part alone: its mass [kg], and its free modes [Hz] as a list or a file."""
+
+    mass: float | None = None
+    frequencies: tuple[float, ...] = ()
+    file: Path | None = None
+    quantity: str | None = None
+
+
+def read_parts(top: Table, materials: Mapping[str, Material]) -> tuple[dict[str, str], dict[str, PartTestChoice]]:
+    """Return the name of the material of each part, and the test of each part that has one."""
     parts: dict[str, str] = {}
+    tests: dict[str, PartTestChoice] = {}
     for name, table in top.named("part").items():
+        test = PartTestChoice(**{key: table.get(key) for key in ("mass", "frequencies", "file", "quantity")})
+        if test != PartTestChoice():
+            tests[name] = test
+        if test.frequencies and test.file:
+            top.faults.add(f"part.{name} has both file and frequencies; give one of them")
         material = table.get("material")
         if material is not None and material not in materials:
             known = ", ".join(f'"{m}"' for m in materials)
@@ -55,7 +75,13 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> dict[str, str]:
         if material is not None:  # else a fault is noted, and nothing may stand in its place
             parts[name] = material
         table.close()
-    return parts
+    return parts, tests
+
+
+def _frequencies(value: Any, name: str) -> tuple[float, ...]:
+    if not isinstance(value, list) or not value:
+        raise InputError(f'{name} = {value!r} should be a list of frequencies, for example ["512 Hz", "1.4 kHz"]')
+    return tuple(quantity(one, "Hz", name) for one in value)
 
 
 MATERIAL: Declared = {
@@ -100,7 +126,18 @@ PARTS = Inner(
             keys={
                 "material": Key.text(
                     "A material of the catalogue or of the study.", REQUIRED, examples=lambda: CATALOGUE
-                )
+                ),
+                "mass": Key.quantity("kg", "Weighed mass of the part alone; narrows the intervals."),
+                "frequencies": Key(
+                    "a list of frequencies",
+                    listed(QUANTITY, 1),
+                    "Measured free modes of the part alone, rigid motions left out; they narrow the intervals.",
+                    (),
+                    unit="Hz",
+                    read=_frequencies,
+                ),
+                "file": Key.file("Universal file of these modes, or of FRFs of the part, in place of frequencies."),
+                "quantity": Key.text("What the FRFs are, where the file does not say.", None, FRF_QUANTITIES),
             },
         )
     },

@@ -26,7 +26,7 @@ STUDY: Declared = {
         either=True,
     ),
     "part": PARTS,
-    "joint": Inner(says="Two faces that meet.", keys=JOINT, many=True, required=True),
+    "joint": Inner(says="Two faces that meet; a part alone has none.", keys=JOINT, many=True),
     "law": LAW,
     "surface": Inner(
         says="The rough surface of all joints without one of their own: a scan, or D, G and scan_area.",
@@ -39,7 +39,7 @@ STUDY: Declared = {
         many=True,
     ),
     "backbone": Inner(says="Frequency and damping of a mode against its amplitude.", keys=BACKBONE),
-    "bolt": Inner(says="A bolt and what tightens it.", keys=BOLT, many=True, required=True),
+    "bolt": Inner(says="A bolt and what tightens it; joints that are not bonded need one.", keys=BOLT, many=True),
     "dowel": Inner(says="A pin in holes of several parts, which carries shear alone.", keys=DOWEL, many=True),
     "bolt_sheet": Inner(
         says="What the sheet of a bolt needs beyond the rest of the study.", keys=BOLT_SHEET, many=True

@@ -1,0 +1,246 @@
+"""What weighing and ringing each part alone says of its stiffness and mass, and of the modes of the assembly.
+
+Of a free part of stiffness s_E K and mass s_m M, mode i has
+
+    ln f_i = ln f_i0 + (ln s_E - ln s_m) / 2 + e_i,
+
+f_i0 the model's frequency, e_i what dimensions, sensors and the test do to this mode alone. The factors have normal
+priors, so that their mean and covariance are in closed form. A mode of the assembly takes up the share kappa_p of its
+strain energy and mu_p of its kinetic energy in part p, and moves by
+
+    d ln f = sum over p of (kappa_p ln s_E,p - mu_p ln s_m,p) / 2.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from faying.case.case import Case
+from faying.case.scatter import DENSITY_SD, SCORE, mode_sd, structure_sd
+from faying.case.solve import LoadedCase
+from faying.fe.surplus import Surplus
+from faying.joint.assembled_parts import unknowns_of
+from faying.joint.modal import ModalProblem, ModesChoice
+from faying.joint.shared_modes import modes_with
+from faying.joint.structure import Structure
+from faying.measured.tested import read_test
+from faying.notes import Note
+from faying.numerics.follow import partners
+from faying.study.keys.material import PartTestChoice
+from faying.typing import Array, Index
+
+BALANCE_SD = 1e-3  # of ln of a weighed mass: a balance of 0.1 %, and what hangs on the part
+LEAST_SD = 3e-3  # of ln f of each mode: sensors and cables, and how far a part is from its drawing
+FARTHEST = 4.0  # standard deviations beyond which a measured frequency is that of another mode
+MODES_EACH, SPARE_MODES = 2, 10  # of the model for each measured one, and in all: a test misses what it does not excite
+TINY = 1e-9  # likeness above none
+SHIFTS = np.linspace(-3, 3, 61)  # common factors that are tried, in standard deviations of their prior
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartFactors:
+    """Factors on stiffness and mass of one part, as its own test leaves them.
+
+    Args:
+        mean: ln s_E and ln s_m (2,).
+        covariance: of both (2, 2).
+        scatter: standard deviation of ln f of each mode by itself [-].
+        count: how many modes of the test they come from.
+    """
+
+    mean: Array
+    covariance: Array
+    scatter: float
+    count: int
+
+    @classmethod
+    def of(
+        cls, ratios: Array, errors: Array, *, prior: tuple[float, float], mode: float, mass: float | None = None
+    ) -> "PartFactors":
+        """Both factors in closed form; the scatter of the modes counts as one of the size of the prior, and they do.
+
+        Args:
+            ratios: ln of measured over computed frequency (t,).
+            errors: Standard deviation of ln f_i0 by the mesh (t,).
+            prior: Standard deviations of ln s_E and ln s_m.
+            mode: Standard deviation of ln f of a mode by itself, before the test.
+            mass: ln of the weighed over the computed mass; None where it was not weighed.
+
+        Source:
+            Normal prior and likelihood: A. Gelman et al., Bayesian Data Analysis, 3rd ed., sections 2.6 and 14.8.
+        """
+        rest = ratios - ratios.mean() if len(ratios) else ratios
+        scatter = max(LEAST_SD, float(np.sqrt((mode**2 + rest @ rest) / max(len(ratios), 1))))
+        rows = np.tile([0.5, -0.5], (len(ratios), 1))
+        seen, precision = ratios, 1 / (scatter**2 + errors**2)
+        if mass is not None:
+            rows, seen = np.vstack([rows, [0.0, 1.0]]), np.append(ratios, mass)
+            precision = np.append(precision, BALANCE_SD**-2)
+        covariance = np.linalg.inv(np.diag(np.array(prior) ** -2.0) + (rows.T * precision) @ rows)
+        mean = covariance @ (rows.T @ (precision * seen))
+        return cls(mean=mean, covariance=covariance, scatter=scatter, count=len(ratios))
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartAlone:
+    """One part by itself, with the mesh and the material that it has in a structure, and its test."""
+
+    name: str
+    structure: Structure
+    test: PartTestChoice
+
+    @cached_property
+    def measured(self) -> Array:
+        """Frequencies [Hz] (t,) of its own test, rising."""
+        test = self.test
+        if test.file is None:
+            return np.sort(np.array(test.frequencies))
+        return np.sort(read_test(test.file, quantity=test.quantity).modes.frequencies)
+
+    def modes(self, count: int) -> tuple[Array, Array]:
+        """Its lowest free elastic modes (m,): frequencies [Hz] and their estimated errors by the mesh [-]."""
+        structure = self.structure
+        problem = ModalProblem(structure=structure, choice=ModesChoice(count=count))
+        found = modes_with(problem, *structure.dynamic_matrices, rigid=structure.rigid)
+        elastic = slice(structure.rigid_count, structure.rigid_count + count)
+        squares = (2 * np.pi * found.frequencies[elastic]) ** 2
+        surplus = Surplus.of(structure.mesh, structure.materials, np.zeros(len(structure.mesh.points), dtype=bool))
+        errors = np.zeros(count) if surplus is None else surplus.error(found.shapes[:, elastic], squares) / 2
+        return found.frequencies[elastic], errors
+
+    def factors(self, structure: float, mode: float) -> PartFactors:
+        """What the test says.
+
+        structure, mode: standard deviations of ln f, common to all modes and of each by itself, before the test.
+        """
+        measured = self.measured
+        weighed = None if self.test.mass is None else float(np.log(self.test.mass / self.structure.mass))
+        ratios = errors = np.zeros(0)
+        if len(measured):
+            computed, errors = self.modes(
+                min(MODES_EACH * len(measured) + SPARE_MODES, self.structure.mesh.unknowns // 4)
+            )
+            ratios = np.log(measured[:, None] / computed) + errors  # a finer mesh has it lower by its error
+            pairs = same_modes(ratios + (weighed or 0.0) / 2, structure, mode)
+            ratios, errors = ratios[pairs], errors[pairs[1]]
+        return PartFactors.of(ratios, errors / SCORE, prior=(2 * structure, DENSITY_SD), mode=mode, mass=weighed)
+
+
+def same_modes(ratios: Array, structure: float, mode: float) -> tuple[Index, Index]:
+    """Indices (t,) of the measured modes that the model has, and of its modes (t,).
+
+    Of all common factors the one is taken under which the modes, each paired once, and the factor are most likely.
+
+    Args:
+        ratios: ln of measured over computed frequency (test, model).
+        structure, mode: standard deviations of the common factor and of each mode by itself.
+    """
+    best, found = np.inf, (np.zeros(0, dtype=np.int64),) * 2
+    for shift in SHIFTS * structure:
+        costs = np.minimum(((ratios - shift) / mode) ** 2, FARTHEST**2)  # what is farther belongs to another mode
+        columns = partners(FARTHEST**2 - costs, TINY)
+        rows = np.flatnonzero(columns >= 0)
+        columns = columns[rows]
+        total = (costs[rows, columns] - FARTHEST**2).sum() + (shift / structure) ** 2
+        if total < best:
+            best, found = total, (rows, columns)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class KnownParts:
+    """Parts of a case that were weighed or rung alone, and what each mode has of them.
+
+    Args:
+        parts, factors: these (p), and what their tests say.
+        strain, kinetic: share of the energy of each mode in each of them (p, loads, m) [-].
+        others: share of the strain energy in parts without a test (loads, m) [-].
+        all_rung: whether every part has measured modes.
+    """
+
+    parts: tuple[PartAlone, ...]
+    factors: tuple[PartFactors, ...]
+    strain: Array
+    kinetic: Array
+    others: Array
+    all_rung: bool
+
+    @classmethod
+    def of(cls, case: Case, states: Sequence[LoadedCase]) -> "KnownParts | None":
+        """Those of a case, solved under each load; None where no part has a test."""
+        study, structure = case.study, case.structure
+        if not study.part_tests:
+            return None
+        tests = study.part_tests.items()
+        parts = tuple(PartAlone(name=name, structure=structure.alone(name), test=test) for name, test in tests)
+        priors = structure_sd(study.uncertain), mode_sd(study.uncertain)
+        energies = [energy_shares(case, parts, state) for state in states]
+        strain, kinetic, others = (np.stack(one) for one in zip(*energies, strict=True))
+        return cls(
+            parts=parts,
+            factors=tuple(part.factors(*priors) for part in parts),
+            strain=strain.swapaxes(0, 1),
+            kinetic=kinetic.swapaxes(0, 1),
+            others=others,
+            all_rung=sum(len(part.measured) > 0 for part in parts) == len(structure.mesh.parts),
+        )
+
+    def instead(self, offsets: Mapping[str, Array]) -> tuple[dict[str, Array], Array]:
+        """Offsets of ln f (2, loads, m) by what is not known, "structure" and "mode" as the parts' tests leave them.
+
+        And what the tests move ln f by (loads, m). Parts without a test keep their share of the prior. Where all were
+        rung, "parts" stands for "structure".
+        """
+        structure, mode = offsets["structure"], offsets["mode"]
+        by_factor = np.stack([self.strain, -self.kinetic], axis=-1) / 2
+        middle = sum(by @ one.mean for by, one in zip(by_factor, self.factors, strict=True))
+        pairs = zip(by_factor, self.factors, strict=True)
+        variance = sum(np.einsum("lmi,ij,lmj->lm", by, one.covariance, by) for by, one in pairs)
+        own = sum((share * one.scatter) ** 2 for share, one in zip(self.strain, self.factors, strict=True))
+        rest = np.clip(1 - self.strain.sum(axis=0), 0.0, 1.0)
+        found = {name: one for name, one in offsets.items() if name != "structure"}
+        found["parts" if self.all_rung else "structure"] = _added(structure * self.others, variance)
+        found["mode"] = _added(mode * rest, own)
+        return found, np.asarray(middle)
+
+    def notes(self) -> Iterator[Note]:
+        """What the test of each part says, and which of its modes the model does not have."""
+        for part, one in zip(self.parts, self.factors, strict=True):
+            name, (stiffness, mass), sd = part.name, np.exp(one.mean), np.sqrt(np.diag(one.covariance))
+            text = f"part {name!r}, by its own test: stiffness {stiffness:.4f} +- {sd[0]:.4f} and mass {mass:.4f} +- "
+            text += f"{sd[1]:.4f} times that of the model"
+            text += f"; each of {one.count} modes is within {100 * one.scatter:.2g} %" if one.count else ""
+            yield Note(code="part-test", text=f"{text} (standard deviations)")
+            look = "look at its geometry, material and units"
+            if abs(one.mean[1]) > FARTHEST * DENSITY_SD:
+                yield Note(code="part-mass", text=f"part {name!r} weighs {mass:.3g} times its model; {look}")
+            measured = len(part.measured)
+            if one.count < measured:
+                text = (
+                    f"part {name!r}: the model has {one.count} of its {measured} measured modes; the others are left "
+                )
+                text += f"out. Give free modes of the part alone; else {look}"
+                yield Note(code="test-modes", text=text)
+
+
+def _added(prior: Array, variance: Any) -> Array:
+    """Both ends (2, loads, m) of a normal prior with another normal number added, which has no mean."""
+    half = np.hypot(prior[1], SCORE * np.sqrt(variance))
+    return np.stack([-half, half])
+
+
+def energy_shares(case: Case, parts: Sequence[PartAlone], state: LoadedCase) -> tuple[Array, Array, Array]:
+    """Shares [-] of some parts in the strain and the kinetic energy of modes (p, m); of other parts in strain (m,)."""
+    mesh, count = case.structure.mesh, len(state.damped.frequencies)
+    shapes = state.modes.shapes[:, case.rigid_count :][:, :count]
+    squares = (2 * np.pi * state.modes.frequencies[case.rigid_count :][:count]) ** 2
+    strain, kinetic = [], []
+    for part in parts:
+        own, (K, M) = shapes[unknowns_of(mesh.part_nodes(part.name))], part.structure.matrices
+        strain.append(np.einsum("im,im->m", own, K @ own) / squares)
+        kinetic.append(np.einsum("im,im->m", own, M @ own))
+    every = np.einsum("im,im->m", shapes, case.structure.matrices[0] @ shapes) / squares
+    return np.stack(strain), np.stack(kinetic), np.clip(every - np.sum(strain, axis=0), 0.0, 1.0)
