@@ -149,7 +149,8 @@ def test_a_file_of_modes_gives_the_frequencies(tmp_path):
     ("keys", "words"),
     [
         ('frequencies = ["1 kHz"]\nfile = "model.inp"\n', "part.low has both file and frequencies"),
-        ('frequencies = "1 kHz"\n', "part.low.frequencies = '1 kHz' should be a list of frequencies"),
+        ("frequencies = []\n", r"part.low.frequencies = \[\] should be a list of frequencies"),
+        ('frequencies = ["1 kg"]\n', "part.low.frequencies"),
         ('mass = "-1 kg"\n', "part.low.mass"),
     ],
 )

@@ -50,7 +50,7 @@ class Interval(Summary):
         return replace(made, low=best * np.exp(-down), high=best * np.exp(up))
 
     def between(self, free: Array | None, bonded: Array | None) -> "Interval":
-        """The interval between frequencies [Hz] (modes,) with free and with bonded faces as modelled, if these are known.
+        """The interval between frequencies [Hz] (modes,) with free and with bonded faces as modelled, if known.
 
         No stiffness of a joint passes them; what is known and not known of the parts does.
         """

@@ -8,7 +8,7 @@ from typing import Any
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import CATALOGUE, MOST_FRICTION, STIFFEST, Material
-from faying.study.declaration.declared import NAME, QUANTITY, REQUIRED, Declared, Inner, Key, listed
+from faying.study.declaration.declared import NAME, QUANTITY, REQUIRED, Declared, Inner, Key, one_or_more
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity
 from faying.study.keys.test import QUANTITIES as FRF_QUANTITIES
@@ -79,9 +79,9 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> tuple[dict[str,
 
 
 def _frequencies(value: Any, name: str) -> tuple[float, ...]:
-    if not isinstance(value, list) or not value:
+    if not value:
         raise InputError(f'{name} = {value!r} should be a list of frequencies, for example ["512 Hz", "1.4 kHz"]')
-    return tuple(quantity(one, "Hz", name) for one in value)
+    return tuple(quantity(one, "Hz", name) for one in (value if isinstance(value, list) else [value]))
 
 
 MATERIAL: Declared = {
@@ -129,8 +129,8 @@ PARTS = Inner(
                 ),
                 "mass": Key.quantity("kg", "Weighed mass of the part alone; narrows the intervals."),
                 "frequencies": Key(
-                    "a list of frequencies",
-                    listed(QUANTITY, 1),
+                    "a frequency, or a list of them",
+                    one_or_more(QUANTITY),
                     "Measured free modes of the part alone, rigid motions left out; they narrow the intervals.",
                     (),
                     unit="Hz",
