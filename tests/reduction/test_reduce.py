@@ -7,6 +7,7 @@ import pytest
 
 import faying
 from faying.bolt.bolt import Bolt
+from faying.contact.models.persson import Persson
 from faying.fe.interface import join
 from faying.files import load_arrays, write_arrays
 from faying.joint.attachments import Support
@@ -17,6 +18,7 @@ from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes
 from faying.reduction.part_shares import PartShares
 from faying.reduction.reduce import STATIC_SHARE, Reduction
+from faying.reduction.reduced import ReducedEquilibrium
 from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]
@@ -347,3 +349,24 @@ def test_springs_of_groups_are_the_sum_over_the_points(open_share):
     springs[: int(60 * open_share)] = 0.0
     expected = np.einsum("qim,qi,qin->mn", motion, springs, motion)
     assert joint_stiffness(motion.reshape(180, 5), springs) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+def test_a_start_that_presses_far_beyond_a_law_leads_to_the_same_equilibrium():
+    """The curve of a law grows like an exponential: waves of the faces left 1e17 times the load."""
+    structure = beam()
+    model = Persson(pair=faying.ContactPair(STEEL, STEEL), h_rms=1e-6, slope=0.1)
+    laws, forces = [JointLaw(model=model)], np.array([1000.0])
+    reduction = Reduction.of(structure, laws, forces, count=COUNT)
+    small = reduction.model
+    right = small.equilibrium(laws, forces, [None])
+    motions = small._motions(small.static_relative, 0)
+    load = small.static_loads @ forces
+    balance = ReducedEquilibrium(small.static_stiffness, list(zip(motions, laws, strict=True)))
+    far = right.displacement * 40.0
+    left = balance._out_of_balance(far, load, balance._stick_slip(far))
+    assert np.linalg.norm(left) > 1e6 * np.linalg.norm(load)
+    found = balance.solve(load, start=far, tolerance=1e-9)
+    assert found.newton_steps < 30
+    assert found.displacement == pytest.approx(
+        right.displacement, rel=1e-5, abs=1e-5 * np.abs(right.displacement).max()
+    )

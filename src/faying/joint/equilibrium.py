@@ -22,6 +22,7 @@ from faying.typing import Array, Index, Mask
 
 Step = tuple[Array, int]  # of Newton's iteration, and how many inner steps it took
 
+FAR = 10.0  # imbalance over the load from which a start is drawn back
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
 FORCING_TERM = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 FIX_FRICTION_BELOW = 1e-4  # imbalance below which k_t and the limit of friction are kept
@@ -159,6 +160,7 @@ class Equilibrium(ABC):
         self.stiffness = self.parts if shanks is None else self.parts + shanks
         if start is None:
             start = self._extrapolated(load) if self._past else self._start(load)
+        start = self._drawn_back(start, load)
         newton = Newton(self, load, tolerance)
         run = newton.run(start, steps)
         try:
@@ -169,6 +171,19 @@ class Equilibrium(ABC):
             u, slip_states = end.value
         self._remember(load, u, alone=shanks is None)
         return self._preload_state(newton, u, slip_states)
+
+    def _drawn_back(self, u: Array, load: Array) -> Array:
+        """A start, or where it presses points by far more than the load, what is nearer on the way to it from rest.
+
+        Beyond its end the curve of a law grows like an exponential, down which Newton takes one step for each factor
+        of three: waves of the faces left 1e17 times the load, and 60 steps were not enough.
+        """
+        with np.errstate(over="ignore", invalid="ignore"):
+            size = np.linalg.norm(self._out_of_balance(u, load, self._stick_slip(u)))
+            if size <= FAR * np.linalg.norm(load) or u @ load <= 0:  # or the way does not lead down from rest
+                return u
+            rest = np.zeros_like(u)
+            return self._line_search(rest, u, load, self._stick_slip(rest))
 
     def _preload_state(self, newton: "Newton", u: Array, slip_states: list[StickSlip]) -> PreloadState:
         """The state that a load has led to; shear that slipped is carried to the next."""
@@ -335,7 +350,7 @@ class Equilibrium(ABC):
         end = slope(1.0)
         if abs(end) <= 0.5 * abs(start):
             return at(1.0)
-        low, high = (0.0, 1.0) if end > 0 else (1.0, 2.0)
+        low, high = (1.0, 2.0) if end < 0 else (0.0, 1.0)  # 0 to 1 also where the end is too far for a number
         while end < 0 and high < 64:
             end = slope(high)
             low, high = (high, 2 * high) if end < 0 else (low, high)
