@@ -442,3 +442,17 @@ def test_check_lays_bolts_on_the_mesh_as_a_run_does(tmp_path):
     assert (fault.key, fault.text[:40]) == ("bolt[2].faces", "the length of thread meets nothing of it")
     with pytest.raises(faying.InputError, match="the length of thread meets nothing of its hole"):
         _ = build(Study.read(file)).fitted_bolts
+
+
+def test_more_memory_than_there_is_comes_with_the_size_that_fits(folder, monkeypatch):
+    fine = 'size = "5 mm"', 'size = "2 mm"'
+    need = looked(folder, fine)[0].expected.memory
+    monkeypatch.setattr("faying.setup.check.available", lambda: need / 2)
+    found, lines = looked(folder, fine)
+    (fault,) = found.faults
+    assert fault.code == "expected"
+    assert lines[fault.line - 1].startswith("size = ")
+    size = re.search(r'geometry.size = "(.+?)" fits', fault.text)[1]
+    again, _ = looked(folder, ('size = "5 mm"', f'size = "{size}"'))
+    assert not again.faults
+    assert again.expected.memory < need / 2

@@ -14,6 +14,7 @@ from faying.case.case import checked_mesh
 from faying.cli.main import cli
 from faying.geometry.face_facts import PartFacts
 from faying.setup import new
+from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.proposal import mesh_size, rounded
 from faying.study import Study
 from tests.geometry.test_face_facts import box, written
@@ -178,7 +179,18 @@ def test_a_name_cannot_break_out_of_a_comment(tmp_path):
     assert set(tomllib.loads(text)["part"]) == {'a"\\b', "upper ü"}
 
 
-def test_the_mesh_is_never_coarser_than_the_thinnest_part(monkeypatch):
+def test_a_washer_does_not_drive_the_mesh_beyond_the_memory(monkeypatch):
+    """3 mm beside a block of 200 mm: two elements across the washer would be 40 GB."""
+    washer = PartFacts(name="washer", volume=1e-6, area=1e-3, low=(0.0, 0.0, 0.0), high=(0.03, 0.03, 0.003))
+    block = PartFacts(name="block", volume=8e-3, area=0.24, low=(0.0, 0.0, 0.0), high=(0.2, 0.2, 0.2))
+    facts = SimpleNamespace(parts=(washer, block), faces=())
+    monkeypatch.setattr("faying.setup.proposal.available", lambda: 4e9)
+    size, _ = mesh_size(facts, set())
+    assert size > 0.003
+    assert memory_of_run(unknowns_of(facts, size)) < 0.7 * 4e9
+
+
+def test_the_mesh_is_never_coarser_than_the_thickest_part(monkeypatch):
     """Where holes alone make more unknowns than are wanted, no size helps; one element across is the end."""
     monkeypatch.setattr("faying.setup.proposal.unknowns_of", lambda facts, size: 10**9)
     part = PartFacts(name="plate", volume=1e-4, area=0.0222, low=(0.0, 0.0, 0.0), high=(0.1, 0.1, 0.01))

@@ -40,6 +40,8 @@ from faying.text import cut, toml
 from faying.units import show, show_area
 
 MAX_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
+TOO_MUCH = 1.5  # times the free memory: a fault, as estimated unknowns are within a factor of 2.5
+COARSER = tuple(1.1**k for k in range(1, 18))  # times a size, to five times: beyond, a mesh says nothing of the parts
 MAX_ROWS = 8  # findings in a summary
 Level = Literal["fault", "note", "ok"]
 
@@ -346,11 +348,30 @@ def _expected(
     about = "" if mesh is not None else "about "
     text = f"{about}{unknowns:,} unknowns, {expected.memory / 1e9:.2g} GB, {duration(max(expected.seconds, 1.0))}"
     if free is not None and expected.memory > free:
-        text += f"; {free / 1e9:.2g} GB are free: mesh more coarsely, or see docs on solvers for larger machines"
-        found.add("fault" if expected.memory > 2 * free else "note", "expected", text, key)
+        text += f"; {free / 1e9:.2g} GB are free: "
+        ratio = _coarser(study, facts, named, free) if mesh is None and spec.step is not None else None
+        if ratio is None:
+            text += "mesh more coarsely"
+        else:
+            text += f'geometry.size = "{show(ratio * spec.size, "m", digits=2)}" fits'
+            text += f", with face sizes {ratio:.2g} times theirs" if spec.face_size else ""
+        text += ", or see docs on solvers for larger machines"
+        found.add("fault" if expected.memory > TOO_MUCH * free else "note", "expected", text, key)
     else:
         found.add("ok", "expected", text, key)
     return expected
+
+
+def _coarser(
+    study: Study, facts: GeometryFacts, named: Mapping[str, tuple[FaceFacts, ...]], free: float
+) -> float | None:
+    """How many times larger elements fit into the free memory [B]; None where what holes need does not."""
+    spec = study.geometry
+    for ratio in COARSER:
+        fine = {name: ratio * size for name, size in spec.face_size.items()}
+        if Expected.of(study, unknowns_of(facts, ratio * spec.size, fine, named)).memory < free:
+            return ratio
+    return None
 
 
 def _contacts(sketch: Sketch, found: _Findings) -> None:

@@ -62,10 +62,15 @@ class Expected:
         if is_mpi(way):
             memory = OVER_MPI * unknowns
         else:
-            memory = BARE + VECTORS * unknowns
+            memory = memory_of_run(unknowns)
             memory += 0.0 if way in ("pardiso", BY_PARTS) else guessed(unknowns) - in_single(unknowns)
         basis = f"{COUNTED if counted else ESTIMATED}; {BASIS}"
         return cls(unknowns=unknowns, memory=memory, seconds=seconds, basis=basis)
+
+
+def memory_of_run(unknowns: int) -> float:
+    """The greatest memory that a run of so many unknowns takes [B], with PARDISO's factor in single precision."""
+    return BARE + VECTORS * unknowns
 
 
 def unknowns_of(

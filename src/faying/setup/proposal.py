@@ -12,8 +12,7 @@ from faying.errors import InputError
 from faying.geometry.face_facts import GeometryFacts, PartFacts, TouchingFaces, part_distance
 from faying.geometry.selectors import TOUCHING, Selector
 from faying.memory import available
-from faying.numerics.memory import guessed
-from faying.setup.expected import unknowns_of
+from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import find_fasteners, quoted
 from faying.setup.found_bolts import FoundBolt, LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
@@ -21,6 +20,7 @@ from faying.setup.found_dowels import FoundDowel, found_dowels
 from faying.units import show
 
 GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that they are tightened to
+ROOM = 0.7  # of the free memory that a proposed run takes, whose unknowns are an estimate
 ACROSS = 2  # elements across the thinnest part
 MAX_UNKNOWNS = 300_000  # unknowns beyond which the mesh is proposed coarser
 MIN_AREA_SHARE = 1e-3  # share of a face's area from which a contact counts
@@ -261,12 +261,15 @@ def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]
     thin = min(plates, key=_thickness)
     size = rounded(_thickness(thin) / ACROSS, 2)
     why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=3)} thick"
-    free, widest = available(), _thickness(thin)
+    free, widest = available(), max(_thickness(part) for part in plates)
     while size < widest:
         unknowns = unknowns_of(facts, size)
-        if unknowns <= MAX_UNKNOWNS and (free is None or guessed(unknowns) <= free / 2):
+        if unknowns <= MAX_UNKNOWNS and (free is None or memory_of_run(unknowns) <= ROOM * free):
             break
-        size = min(rounded(1.1 * size, 2), widest)
+        larger = min(rounded(1.1 * size, 2), widest)
+        if unknowns_of(facts, larger) > unknowns:  # that of holes grows
+            break
+        size = larger
         why = "coarser than two elements across the thinnest part, for memory and time; try a finer one, too"
     return size, f"mesh of {show(size, 'm')}: {why}"
 
