@@ -126,7 +126,7 @@ BACKBONE: Declared = {
     "friction": Key(
         "a number or a list of them",
         one_or_more(NUMBER),
-        ("Coefficient for all joints, or a list with a curve for each; those of the joints where left out."),
+        "Coefficient for all joints, or a list with a curve for each; those of the joints where left out.",
         (),
         read=frictions,
     ),
@@ -144,7 +144,7 @@ BACKBONE: Declared = {
     "law": Key(
         'the name of a law, or a list of them, such as ["auto", "jk"]',
         one_or_more(WORDS),
-        ("Contact law of all joints, or a list with a curve for each; that of the study where left out."),
+        "Contact law of all joints, or a list with a curve for each; that of the study where left out.",
         (),
         read=laws,
     ),

@@ -198,10 +198,8 @@ BOLT: Declared = {
     "diameter": Key.quantity("m", "Diameter of the shank; with material, the bolt has stiffness and mass."),
     "pitch": Key.quantity(
         "m",
-        (
-            "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(P/2pi + "
-            "0.577 d2 mu + 0.65 d mu) of ISO 16047."
-        ),
+        "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(P/2pi + 0.577 d2 mu + 0.65 d "
+        "mu) of ISO 16047.",
     ),
     "thread_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction in the thread."),
     "head_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction under the head."),
@@ -230,7 +228,7 @@ BOLT: Declared = {
     "seat": Key(
         'inner and outer diameter, for example ["8.4 mm", "16 mm"]',
         listed(QUANTITY, 2, 2),
-        ("Inner and outer diameter of the ring that is pressed; the full face where left out and no at is given."),
+        "Inner and outer diameter of the ring that is pressed; the full face where left out and no at is given.",
         read=_ring,
         unit="m",
     ),
@@ -240,17 +238,13 @@ BOLT: Declared = {
     ),
     "engaged": Key.quantity(
         "m",
-        (
-            "Length of the thread in a tapped hole, whose wall is the second face; 1.5 diameters, or "
-            "the depth of the hole, where left out."
-        ),
+        "Length of the thread in a tapped hole, whose wall is the second face; 1.5 diameters, or the depth of the "
+        "hole, where left out.",
     ),
     "shank": Key.quantity(
         "m",
-        (
-            "Length of the plain shank under the head. Where left out: 0, a thread up to the head; "
-            "all of the free length for a diameter that is not that of the thread."
-        ),
+        "Length of the plain shank under the head. Where left out: 0, a thread up to the head; all of the free length "
+        "for a diameter that is not that of the thread.",
         positive=False,
     ),
     "head": Key.text("The head of the screw.", "hexagon", ("hexagon", "socket")),

@@ -116,7 +116,7 @@ SELECTOR: Declared = {
     "normal": Key(
         'an axis such as "+z", or three numbers such as [0, 0, 1]',
         {"anyOf": [{"enum": list(AXES)}, listed({"type": "number"}, 3, 3)]},
-        ('Outward normal of a plane, within 1 degree: "+x", "-x", "+y", "-y", "+z", "-z" or three numbers.'),
+        'Outward normal of a plane, within 1 degree: "+x", "-x", "+y", "-y", "+z", "-z" or three numbers.',
         read=_normal,
     ),
     "touching": Key.text("The part that the face touches, or comes as near to as geometry.snap says."),
@@ -125,10 +125,8 @@ SELECTOR: Declared = {
     "number": Key(
         "a whole number from 1 to 1,000,000, or a list of them",
         {"anyOf": [INTEGER, listed(INTEGER, 1)]},
-        (
-            "Number of the face among those of its part, as `faying faces` lists them; or those of "
-            "several faces that are meant together, such as [3, 5]."
-        ),
+        "Number of the face among those of its part, as `faying faces` lists them; or those of several faces that are "
+        "meant together, such as [3, 5].",
         read=_numbers,
     ),
     "all": Key.truth("Several faces that fit count as one."),

@@ -78,8 +78,8 @@ FORM: Declared = {
     "second": Inner(says="Measured heights of the second face.", keys=HEIGHTS),
     "waviness": Inner(
         says=(
-            "Random waves between the scan and the form of the face. The size is said in one way: "
-            "Wq, Wa, flatness, process or from."
+            "Random waves between the scan and the form of the face. The size is said in one way: Wq, Wa, flatness, "
+            "process or from."
         ),
         keys=WAVINESS,
     ),

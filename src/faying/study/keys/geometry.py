@@ -143,14 +143,12 @@ GEOMETRY: Declared = {
     ),
     "face": Inner(
         says=(
-            "Names for faces that have none in the file. A selector may also stand where a joint, a "
-            "bolt, a support or a mass names a face."
+            "Names for faces that have none in the file. A selector may also stand where a joint, a bolt, a support or "
+            "a mass names a face."
         ),
         keys={
             NAME: Inner(
-                says=(
-                    "The face for which all that is given holds gets NAME; it is an error where none or several fit."
-                ),
+                says="The face for which all that is given holds gets NAME; it is an error where none or several fit.",
                 keys=SELECTOR,
             )
         },
@@ -159,10 +157,7 @@ GEOMETRY: Declared = {
     "leave_out": Key(
         'a list of parts, for example ["dowel 1", "dowel 2"]',
         listed(WORDS, 0),
-        (
-            "Parts of the STEP file that are not meshed, such as dowels, or the bolts and nuts that "
-            "a [[bolt]] stands for."
-        ),
+        "Parts of the STEP file that are not meshed, such as dowels, or the bolts and nuts that a [[bolt]] stands for.",
         (),
         read=_parts,
     ),

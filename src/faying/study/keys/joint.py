@@ -116,29 +116,23 @@ JOINT: Declared = {
     ),
     "faces": two_faces("The two faces; the first is the rough one."),
     "springs": Key.text(
-        (
-            "Springs per area on both faces, or one at each pair of nodes, as in the JK paper; the "
-            "latter depends on the mesh."
-        ),
+        "Springs per area on both faces, or one at each pair of nodes, as in the JK paper; the latter depends on the "
+        "mesh.",
         "per-area",
         ("per-area", "per-node"),
     ),
     "friction": Key.within(
         0,
         MOST_FRICTION,
-        (
-            "Coefficient at which the joint slips while the bolts are tightened, and in a backbone; "
-            "sticks everywhere where left out."
-        ),
+        "Coefficient at which the joint slips while the bolts are tightened, and in a backbone; sticks everywhere "
+        "where left out.",
     ).varying(short="friction"),
     "tangential": Key(
         '"law", "mindlin", or k_t/k_n, above 0 and at most 2',
         {"anyOf": [NUMBER, {"enum": ["law", "mindlin"]}]},
-        (
-            'Tangential stiffness: "law" takes that of the law, "mindlin" takes k_t/k_n = 2(1 - '
-            "nu)/(2 - nu), and a number is k_t/k_n itself; measured ratios reach from 0.1 to 0.7. "
-            "That of the law where it has one, else Mindlin's, if left out."
-        ),
+        'Tangential stiffness: "law" takes that of the law, "mindlin" takes k_t/k_n = 2(1 - nu)/(2 - nu), and a '
+        "number is k_t/k_n itself; measured ratios reach from 0.1 to 0.7. That of the law where it has one, else "
+        "Mindlin's, if left out.",
         read=_tangential,
         parameter=TANGENTIAL,
     ).varying(),

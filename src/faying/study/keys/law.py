@@ -150,7 +150,7 @@ LAW = Inner(
         "model": Key(
             "text",
             WORDS,
-            ('Label of the law; "auto" where left out, which solves the contact on the scan or takes the nearest law.'),
+            'Label of the law; "auto" where left out, which solves the contact on the scan or takes the nearest law.',
             read=lambda value, name: find(text(value, name)),
             examples=lambda: sorted(label.lower() for label in kinds()),
         ),

@@ -143,10 +143,8 @@ LOAD: Declared = {
     ),
     "acceleration": _three(
         "m/s^2",
-        (
-            "Acceleration of the whole structure along x, y and z; the inertia of parts, bolts and "
-            "masses pulls the other way."
-        ),
+        "Acceleration of the whole structure along x, y and z; the inertia of parts, bolts and masses pulls the other "
+        "way.",
     ),
     "temperature": Key(
         CHANGES,

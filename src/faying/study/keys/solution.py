@@ -84,18 +84,14 @@ def read_order(table: Table, names: Sequence[str]) -> tuple[int, ...] | None:
 MODES: Declared = {
     "count": Key.count("Number of elastic modes.", 10, most=MAX_MODES),
     "damping": Key.text(
-        (
-            "Loss of the joints: the same energy per cycle at every frequency, or dampers as in the "
-            "JK paper, which depend on the mesh."
-        ),
+        "Loss of the joints: the same energy per cycle at every frequency, or dampers as in the JK paper, which "
+        "depend on the mesh.",
         "hysteretic",
         ("hysteretic", "viscous"),
     ),
     "solver": Key.text(
-        (
-            'Factorisation; the fastest one found where left out. "mpi" is none, but multigrid over '
-            "as many processes as FAYING_MPI_PROCESSES says, else as there are cores."
-        ),
+        'Factorisation; the fastest one found where left out. "mpi" is none, but multigrid over as many processes as '
+        "FAYING_MPI_PROCESSES says, else as there are cores.",
         None,
         SOLVERS,
     ),
@@ -103,7 +99,7 @@ MODES: Declared = {
     "levels": Key(
         'a list, such as ["0.1 m/s^2", "1 m/s^2", "10 m/s^2"], or []',
         listed(QUANTITY, 0),
-        ("Accelerations of the point that moves most, rising, at which damping and frequency are found; [] for none."),
+        "Accelerations of the point that moves most, rising, at which damping and frequency are found; [] for none.",
         ModesChoice.levels,
         read=_levels,
         unit="m/s^2",

@@ -213,10 +213,8 @@ SURFACE: Declared = {
     ).varying(_in_surface("G")),
     "scan_area": Key.quantity("m^2", "Area of the scan that D and G come from.").varying(_in_surface("scan_area")),
     "counter": Key.text(
-        (
-            'The other face: "same" (alike in its statistics, unrelated point by point), "smooth", '
-            "or the file of its scan."
-        ),
+        'The other face: "same" (alike in its statistics, unrelated point by point), "smooth", or the file of its '
+        "scan.",
         "same",
         examples=lambda: COUNTERS,
     ),

@@ -181,7 +181,7 @@ TEST: Declared = {
     "loss_factors": Key(
         NUMBERS,
         LOSSES,
-        ("Measured loss factors, a number for each frequency, nan for none: `faying identify` uses them."),
+        "Measured loss factors, a number for each frequency, nan for none: `faying identify` uses them.",
     ),
     "damping_ratios": Key(
         NUMBERS, LOSSES, "Measured damping ratios, in place of loss factors, which are twice as much."
