@@ -164,7 +164,10 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     owner = {name: some[0].part for name, some in named.items()}
     for key, fault in name_faults(study, list(facts.by_part), owner, () if ready is None else ready.bonded):
         found.add("fault", "names", fault, key)
-    _sizes(study, named, found)
+    for name in study.geometry.face_size:
+        if name not in named:
+            text = f"size of face {name!r}: the faces are {', '.join(sorted(named))}"
+            found.add("fault", "names", text, f"geometry.face_size.{name}")
     if len(found.out) > before and any(one.level == "fault" for one in found.out):
         return Checked(findings=tuple(found.out), expected=_expected(study, facts, named, ready, found))
     found.add("ok", "names", f"{len(facts.parts)} parts and {len(named)} named faces of {facts.file}")
@@ -307,14 +310,6 @@ def _laid(study: Study, mesh: Mesh, surfaces: Sequence[Surface], found: _Finding
             found.tried("bolt", f"bolt[{k}].faces", partial(bolt.fitted, mesh, materials))
     for k, dowel in enumerate(study.dowels, 1):
         found.tried("dowel", f"dowel[{k}].walls", partial(dowel.fitted, mesh))
-
-
-def _sizes(study: Study, named: Mapping[str, tuple[FaceFacts, ...]], found: _Findings) -> None:
-    """Names of faces that are meshed finer."""
-    for name in study.geometry.face_size:
-        if name not in named:
-            text = f"size of face {name!r}: the faces are {', '.join(sorted(named))}"
-            found.add("fault", "names", text, f"geometry.face_size.{name}")
 
 
 def _expected(

@@ -15,7 +15,7 @@ from faying.bolt.threads import PROOF, Fastener, Thread
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import CATALOGUE, Material
-from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed, one_or_more
+from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, one_or_more
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity
 from faying.study.keys.face import face_names, two_faces
@@ -132,13 +132,6 @@ def _washer(table: Table, bolt: str, materials: Mapping[str, Material]) -> Washe
     return Washer(outer=outer, inner=inner, thickness=thickness, material=material)
 
 
-def _ring(value: Any, name: str) -> tuple[float, float]:
-    if not isinstance(value, list) or len(value) != 2:
-        raise InputError(f'{name} = {value!r} should be inner and outer diameter, for example ["8.4 mm", "16 mm"]')
-    inner, outer = (quantity(v, "m", name, positive=False) for v in value)
-    return inner, outer
-
-
 def _forces(
     table: Table, diameter: float | None, pitch: float | None, friction: tuple[float | None, float | None]
 ) -> tuple[float, ...]:
@@ -225,12 +218,11 @@ BOLT: Declared = {
             "material": Key.text("Material.", REQUIRED, examples=lambda: CATALOGUE),
         },
     ),
-    "seat": Key(
+    "seat": Key.quantities(
         'inner and outer diameter, for example ["8.4 mm", "16 mm"]',
-        listed(QUANTITY, 2, 2),
+        "m",
+        2,
         "Inner and outer diameter of the ring that is pressed; the full face where left out and no at is given.",
-        read=_ring,
-        unit="m",
     ),
     "head_mass": Key.quantity("kg", "Mass of the head; of a hexagon head of the diameter where left out."),
     "nut_mass": Key.quantity(

@@ -16,11 +16,10 @@ def read_form(table: Table) -> Form | None:
         table.faults.add(f"{table.where}: flat = true says that the faces have no form; leave out {', '.join(others)}")
     given = {name: table.get(name) for name in PARAMETERS}
     along = table.get("along")
-    gap, first, second = table.table("gap"), table.table("first"), table.table("second")
     maps: dict[str, Any] = {
-        "gap": None if gap is None else _gap(gap),
-        "first": None if first is None else _face(first),
-        "second": None if second is None else _face(second),
+        "gap": table.inner("gap", _gap),
+        "first": table.inner("first", _face),
+        "second": table.inner("second", _face),
         "waviness": table.inner("waviness", read_waviness),
     }
     table.close()

@@ -73,7 +73,6 @@ class JointChoice:
         if "gap" in table.data:
             table.faults.add(f"{table.where}.gap has become {table.where}.form.gap; rename the table")
             table.data.pop("gap")
-        surface, law = table.table("surface"), table.table("law")
         name = table.get("name", f"joint {index + 1}")
         bonded = table.get("bonded")
         more = [key for key in table.data if key not in ("name", "faces", "bonded")]
@@ -86,8 +85,8 @@ class JointChoice:
             name=name,
             faces=face_names(table, name),
             **{key: table.get(key) for key in ("springs", "tangential", "friction", "search_distance")},
-            surface=None if surface is None else SurfaceChoice.of(surface),
-            law=None if law is None else LawChoice.of(law),
+            surface=table.inner("surface", SurfaceChoice.of),
+            law=table.inner("law", LawChoice.of),
             form=table.inner("form", read_form),
             bonded=bonded,
             number=index + 1,
@@ -143,11 +142,7 @@ JOINT: Declared = {
 
 def _in_form(name: str) -> Put:
     """Puts a number in the form of a joint."""
-
-    def put(joint: JointChoice, value: float) -> JointChoice:
-        return replace(joint, form=(joint.form or Form()).with_value(name, value))
-
-    return put
+    return lambda joint, value: replace(joint, form=(joint.form or Form()).with_value(name, value))
 
 
 # where the numbers of a form stand under [joint], and what [uncertain] calls them, where it is not their own name

@@ -127,11 +127,7 @@ def _note_misplaced(table: Table, kind: LawKind) -> bool:
 
 def in_law(name: str) -> Put:
     """Puts a value in an entry of a law."""
-
-    def put(law: LawChoice, value: object) -> LawChoice:
-        return replace(law, given={**law.given, name: value})
-
-    return put
+    return lambda law, value: replace(law, given={**law.given, name: value})
 
 
 def _of_laws() -> dict[str, dict[str, Key]]:

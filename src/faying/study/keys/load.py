@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from faying.errors import InputError
-from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed
+from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key
 from faying.study.declaration.reader import Made, Table
 from faying.study.declaration.values import number, quantity
 from faying.study.keys.face import face_name, one_face
@@ -18,15 +18,17 @@ from faying.study.load import (
     Force,
     Load,
     Pressure,
-    Vector,
     in_order,
 )
 
-LENGTH = '["0 mm", "0 mm", "0.1 mm"]'
-EXAMPLES = {"N": '["0 N", "0 N", "5 kN"]', "N*m": '["0 N*m", "20 N*m", "0 N*m"]', "m": LENGTH}
+EXAMPLES = {
+    "N": '["0 N", "0 N", "5 kN"]',
+    "N*m": '["0 N*m", "20 N*m", "0 N*m"]',
+    "m": '["0 mm", "0 mm", "0.1 mm"]',
+    "m/s^2": '["0 m/s^2", "0 m/s^2", "98.1 m/s^2"]',
+}
 CHANGES = 'changes by part or bolt, for example {plate = "60 K"}'
 FACTORS = 'factors by load, for example {"10 g" = 1.5}'
-EXAMPLES["m/s^2"] = '["0 m/s^2", "0 m/s^2", "98.1 m/s^2"]'
 
 
 def read_loads(tables: Sequence[Table]) -> tuple[Load, ...]:
@@ -81,16 +83,6 @@ def _on_faces(table: Table, key: str, make: Callable[[str, Any], Made]) -> list[
     return out
 
 
-def _vector(unit: str) -> Callable[[Any, str], Vector]:
-    def convert(value: Any, name: str) -> Vector:
-        if not isinstance(value, list) or len(value) != 3:
-            raise InputError(f"{name} = {value!r} should be three components, for example {EXAMPLES[unit]}")
-        x, y, z = (quantity(one, unit, name, positive=False) for one in value)
-        return x, y, z
-
-    return convert
-
-
 def _by_name(form: str, read: Callable[[Any, str], float]) -> Callable[[Any, str], dict[str, float]]:
     def convert(value: Any, name: str) -> dict[str, float]:
         if not isinstance(value, dict) or not value:
@@ -102,8 +94,7 @@ def _by_name(form: str, read: Callable[[Any, str], float]) -> Callable[[Any, str
 
 def _three(unit: str, says: str, default: Any = None) -> Key:
     """Three components with units."""
-    kind = f"three components, for example {EXAMPLES[unit]}"
-    return Key(kind, listed(QUANTITY, 3, 3), says, default, read=_vector(unit), unit=unit)
+    return Key.quantities(f"three components, for example {EXAMPLES[unit]}", unit, 3, says, default)
 
 
 LOAD: Declared = {
