@@ -123,7 +123,6 @@ class LoadStatics:
         self._relative = [np.zeros((3 * len(contact.weights), 0)) for _, contact in self.joints]
         self._single = [np.zeros((len(contact.weights), 3, 0), dtype=np.float32) for _, contact in self.joints]
         self._at_rest = [contact.advance(contact.start, contact.rest)[1] for _, contact in self.joints]
-        self.solutions = 0  # by the factorisation
 
     @property
     def size(self) -> int:
@@ -401,7 +400,6 @@ class LoadStatics:
 
     def _solved(self, forces: Array) -> Array:
         """Displacements near K_0^-1 forces (unknowns, k)."""
-        self.solutions += forces.shape[1]
         found = np.asarray(self.factor.solve(forces))
         if self._rigid.size:
             found = found - self._rigid @ (self._rigid.T @ found)

@@ -12,8 +12,9 @@ from faying.decks.raw import Pretension
 from faying.fe.mesh import Mesh
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.mesh_facts import mesh_facts
+from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import to_nanometres
-from faying.setup.proposal import BoltProposal, JointProposal, Proposal, snapped, touching
+from faying.setup.proposal import BoltProposal, Proposal, named_joints, snapped, touching
 from faying.typing import Array
 
 ALONG = 0.9  # cosine between the axis of a bolt and the normal of its seats
@@ -56,7 +57,7 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
     return Proposal(
         facts=facts,
         faces={},
-        joints=tuple(_joint(facts, contact, k, len(contacts)) for k, contact in enumerate(contacts, 1)),
+        joints=named_joints(facts, contacts, FaceNames(facts, snap)),
         bolts=tuple(bolts),
         size=0.0,
         snap=snap,
@@ -76,16 +77,6 @@ def _halves(path: Path, mesh: Mesh) -> dict[str, str]:
             joined[f"bolt{len(joined) + 1}"] = " + ".join(parts)
     halves = {one for some in joined.values() for one in some.split(" + ")}
     return {part: part for part in mesh.parts if part not in halves} | joined if joined else {}
-
-
-def _joint(facts: GeometryFacts, contact: TouchingFaces, number: int, count: int) -> JointProposal:
-    one, two = (facts.face(*side) for side in contact.sides)
-    return JointProposal(
-        name="joint" if count == 1 else f"joint {number}",
-        faces=(one.name, two.name),
-        gap=contact.gap,
-        area=contact.area,
-    )
 
 
 def _bolt(

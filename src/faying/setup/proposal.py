@@ -135,7 +135,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     contacts = [contact for contact in contacts if contact not in aside and contact not in apart]
     snap, remarks = snapped(facts, contacts)
     names = FaceNames(facts, snap)
-    joints = _named_joints(facts, contacts, names)
+    joints = named_joints(facts, contacts, names)
     remarks += fasteners.remarks
     if alone:
         remarks.append(f"{quoted(alone)}: no flat face touches another part; left out of the mesh (geometry.leave_out)")
@@ -164,9 +164,10 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     )
 
 
-def _named_joints(
+def named_joints(
     facts: GeometryFacts, contacts: Sequence[TouchingFaces], names: FaceNames
 ) -> tuple[JointProposal, ...]:
+    """The joints of planes that touch, with names of their faces."""
     joints = []
     for k, contact in enumerate(contacts, 1):
         word = "joint" if len(contacts) == 1 else f"joint {k}"

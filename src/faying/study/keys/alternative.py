@@ -37,6 +37,4 @@ class AlternativeChoice:
         if law is None and surface is None and form is None:
             table.faults.add(f"{table.where}: give a law, a surface or a form that differs from the study's")
         name = table.get("name", law.model if law is not None else f"alternative {index + 1}")
-        choice = cls(name=name or "", law=law, surface=surface, form=form)
-        table.close()
-        return choice
+        return cls(name=name or "", law=law, surface=surface, form=form)

@@ -73,7 +73,6 @@ class BackboneChoice:
         given = {key: table.get(key) for key in BACKBONE if key != "law"} | {"laws": table.get("law")}
         if given["measured"] is not None:
             table.made(lambda: MeasuredBackbone.read(given["measured"]))  # a fault shows at once
-        table.close()
         return table.made(lambda: cls(**given))
 
 

@@ -73,7 +73,6 @@ def read_bolt(
                     **given,
                 )
             )
-    table.close()
     return bolt, forces
 
 
@@ -126,7 +125,6 @@ def _note_solid(table: Table, part: str) -> None:
 def _washer(table: Table, bolt: str, materials: Mapping[str, Material]) -> Washer | None:
     outer, inner, thickness = (table.get(key) for key in ("outer", "inner", "thickness"))
     material = named_material(table, materials, f"bolt {bolt!r}")
-    table.close()
     if None in (outer, inner, thickness) or material is None:
         return None
     return Washer(outer=outer, inner=inner, thickness=thickness, material=material)

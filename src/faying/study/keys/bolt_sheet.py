@@ -78,7 +78,6 @@ class BoltSheetChoice:
         )
         if way is not None and choice.tightening_factor is not None:
             table.faults.add(f"{table.where} has both tightening and tightening_factor; give one of them")
-        table.close()
         return choice
 
 

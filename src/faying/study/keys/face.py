@@ -25,7 +25,6 @@ def read_selector(table: Table) -> Selector | None:
         table.data.pop("point")
     given: dict[str, Any] = {key: table.get(key) for key in SELECTOR if key != "part"}
     rules = [key for key in ("normal", "touching", "nearest", "number") if key in table.data]
-    table.close()
     if not rules and part is not None:
         table.faults.add(
             f'{table.where} gives a part but no face of it; add normal = "+z", touching = "another part", '

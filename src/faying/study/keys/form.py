@@ -22,7 +22,6 @@ def read_form(table: Table) -> Form | None:
         "second": table.inner("second", _face),
         "waviness": table.inner("waviness", read_waviness),
     }
-    table.close()
     values = {name: value for name, value in given.items() if value is not None}
     return table.made(lambda: Form(**values, along=along, **maps))
 
@@ -30,7 +29,6 @@ def read_form(table: Table) -> Form | None:
 def _gap(table: Table) -> GapMap | None:
     """Read the map of a gap: CSV or text of x, y, gap, with the units of the columns and the place of their axes."""
     given = {key: table.get(key) for key in GAP}
-    table.close()
     path = given.pop("file")
     return None if path is None else table.made(lambda: read_gap_map(path, **given))
 
@@ -38,7 +36,6 @@ def _gap(table: Table) -> GapMap | None:
 def _face(table: Table) -> FaceMap | None:
     """Read the heights of one face: a list of points or a scan, and where it lies."""
     given = {key: table.get(key) for key in HEIGHTS}
-    table.close()
     if given["file"] is None:
         return None
 

@@ -53,7 +53,6 @@ def read_geometry(top: Table) -> GeometryChoice:
     faces = _faces(table)
     snap = table.get("snap")
     left = table.get("leave_out")
-    table.close()
     return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap, leave_out=left)
 
 
@@ -96,7 +95,6 @@ def _meshed(table: Table) -> GeometryChoice:
     sets = _by_name(table, "sets")
     faces = _faces(table)
     snap = table.get("snap")
-    table.close()
     return GeometryChoice(mesh=mesh, unit=unit, sets=sets, face=faces, snap=snap)
 
 

@@ -81,7 +81,7 @@ class JointChoice:
                 f"{table.where}.{more[0]}: joint {name!r} is bonded, so that it has no pressure, slip or law; leave "
                 f"{', '.join(more)} out, or bonded"
             )
-        choice = cls(
+        return cls(
             name=name,
             faces=face_names(table, name),
             **{key: table.get(key) for key in ("springs", "tangential", "friction", "search_distance")},
@@ -91,8 +91,6 @@ class JointChoice:
             bonded=bonded,
             number=index + 1,
         )
-        table.close()
-        return choice
 
 
 def read_joints(top: Table) -> tuple[tuple[JointChoice, ...], tuple[JointChoice, ...]]:

@@ -37,6 +37,7 @@ class LawChoice:
         kind = table.get("model")
         counterbody = table.get("counterbody")
         if kind is None and "model" in table.data:
+            table.data.clear()  # nothing is said of keys of a law that is not known
             return cls.unknown()
         kind = kind or find(cls.model)
         given = {}
@@ -54,7 +55,6 @@ class LawChoice:
         for key in table.data:
             if not table.known(key):
                 misspelt_keys |= set(get_close_matches(key, kind.law.entries(), n=1))
-        table.close()
         # keys of another law: it may be meant, which needs no surface
         choice = cls(
             model=kind.label,

@@ -49,7 +49,6 @@ def _read(table: Table) -> Load | None:
     moves = _on_faces(table, "displacement", Displacement)
     acceleration = table.get("acceleration") or NOTHING
     more = {key: table.get(key) for key in ("temperature", "combine", "after", "increments")}
-    table.close()
     if name is None or None in forces or None in pressures or None in moves:
         return None
     return table.made(
@@ -69,7 +68,6 @@ def _force(table: Table, label: str) -> Force | None:
     force = table.get("force") or NOTHING
     moment = table.get("moment") or NOTHING
     place = table.get("point")
-    table.close()
     return table.made(lambda: Force(face, force=force, moment=moment, point=place))
 
 
@@ -78,7 +76,6 @@ def _on_faces(table: Table, key: str, make: Callable[[str, Any], Made]) -> list[
     out: list[Made | None] = []
     for k, one in enumerate(table.tables(key), 1):
         face, value = face_name(one, f"{table.where} {key} {k}"), one.get(key)
-        one.close()
         out.append(None if face is None or value is None else make(face, value))
     return out
 

@@ -21,7 +21,6 @@ def read_materials(top: Table) -> dict[str, Material]:
     materials = dict(CATALOGUE)
     for name, table in top.named("material").items():
         fields = {key: table.get(key) for key in MATERIAL}
-        table.close()
         if None not in (fields["E"], fields["nu"], fields["density"]):
             try:
                 materials[name] = Material(name=name, **fields)
@@ -74,7 +73,6 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> tuple[dict[str,
             )
         if material is not None:  # else a fault is noted, and nothing may stand in its place
             parts[name] = material
-        table.close()
     return parts, tests
 
 

@@ -53,7 +53,6 @@ class SurfaceChoice:
             table.faults.add(
                 f"{table.where}.D = {choice.D}: the dimension of a surface is between 2 and 3, for example 2.4"
             )
-        table.close()
         return choice
 
     def read(self) -> "Surface":

@@ -79,7 +79,6 @@ def read_test(top: Table, loads: tuple[float, ...]) -> tuple[TestChoice | None, 
     if "file" in table.data and "frequencies" in table.data:
         top.faults.add("test has both file and frequencies; give one of them")
     listed, hammer = (None, _file(table, loads)) if "file" in table.data else (_listed(table, len(loads)), None)
-    table.close()
     return listed, hammer
 
 
