@@ -60,8 +60,13 @@ def json_text(tree: Any) -> str:
 def in_columns(*columns: tuple[str, Iterable[Any], str]) -> list[list[str]]:
     """Rows of text, the heads first, from columns: head, values, format; a dash stands for NaN."""
     heads = [head for head, _, _ in columns]
-    cells = [["-" if value != value else format(value, form) for value in values] for _, values, form in columns]
+    cells = [[or_dash(value, form) for value in values] for _, values, form in columns]
     return [heads, *map(list, zip(*cells, strict=True))]
+
+
+def or_dash(value: Any, form: str) -> str:
+    """A value in a format; a dash stands for NaN."""
+    return "-" if value != value else format(value, form)
 
 
 def csv_text(rows: Iterable[Sequence[Any]]) -> str:

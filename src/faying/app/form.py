@@ -14,8 +14,8 @@ from faying.setup.edit import edited, parsed, written
 from faying.setup.lines import KeyPath, line_of, lines_of, name_of
 from faying.study.declaration.declared import NAME, NUMERAL, REQUIRED, Declared, Inner, Key
 from faying.study.keys.tables import STUDY
-from faying.study.keys.uncertain import DISTRIBUTIONS, OWN
-from faying.study.keys.varied import MODEL, rooms, short_keys, varied
+from faying.study.keys.uncertain import OWN, flat
+from faying.study.keys.varied import rooms, short_keys, varied
 from faying.text import toml
 
 Shape = Literal["text", "choice", "truth", "number", "face", "list", "some", "any"]
@@ -157,7 +157,8 @@ class _Maker:
         table = data if isinstance(data, Mapping) else {}
         inside: list[FormGroup] = []
         if inner.free:
-            group.fields.extend(self._field((*path, *rest), f"{name}.{'.'.join(rest)}", FREE) for rest in _flat(table))
+            for rest, _ in flat(table):
+                group.fields.append(self._field((*path, *rest), ".".join((name, *rest)), FREE))
             group.additions.append(self._scatter(path))
         for key, what in _keys(inner, table).items():
             here, its_name = (*path, key), f"{name}.{key}" if name else key
@@ -312,16 +313,6 @@ def _value_at(data: Any, path: KeyPath) -> Any:
             return None
         data = data[one]
     return data
-
-
-def _flat(table: Mapping[str, Any], before: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
-    """The keys of [uncertain], through tables whose names are parts of a key."""
-    for name, value in table.items():
-        path = (*before, name)
-        if isinstance(value, Mapping) and value and not DISTRIBUTIONS & set(value) and ".".join(path) != MODEL:
-            yield from _flat(value, path)
-        else:
-            yield path
 
 
 def _faces(data: Any, key: str = "") -> Iterator[str]:

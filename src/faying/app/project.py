@@ -135,9 +135,8 @@ def checked_name(name: str) -> str:
     """A bare file name. Raises InputError for folders, hidden files and characters that not every system takes."""
     if not NAME.fullmatch(name) or name.endswith((" ", ".")):
         raise InputError(
-            f"{name[:80]!r} is not a file name that Faying accepts; use letters, digits, blanks and . "
-            "_ - + ( ), at most "
-            "119, with no folder and no dot at either end"
+            f"{name[:80]!r} is not a file name that Faying accepts; use letters, digits, blanks and . _ - + ( ), at "
+            "most 119, with no folder and no dot at either end"
         )
     return name
 

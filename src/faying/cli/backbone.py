@@ -81,7 +81,6 @@ def command(study: Path, **options: Any) -> None:
 
 def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) -> None:
     """Curves of all modes under one preload, printed and written as CSV; with harmonic balance of one mode if asked."""
-
     from faying.answer.level_curves import balanced_rows, level_curves, rows
     from faying.backbones.backbone import backbones
     from faying.output import table
@@ -147,7 +146,6 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
 
 def place(text: str) -> tuple[float, float, float]:
     """Turn "10,0,5 mm" into a point [m]; InputError that shows the form otherwise."""
-
     numbers, _, unit = text.strip().rpartition(" ")
     parts = [part.strip() for part in numbers.split(",")]
     if len(parts) != 3 or not unit:

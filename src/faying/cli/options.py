@@ -53,7 +53,6 @@ def quantity(value: Any, unit: str) -> dict[str, Any]:
 
 def frequency_band(text: str) -> tuple[float, float]:
     """Turn the text of --band into two frequencies [Hz]; InputError that shows the form otherwise."""
-
     parts = text.split(":")
     if len(parts) != 2:
         raise InputError(f'--band "{text}": give two frequencies, for example "20 Hz:800 Hz"')

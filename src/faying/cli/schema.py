@@ -17,7 +17,6 @@ def command(out: Path | None, as_json: bool) -> None:
 
     A study names it in its first line: #:schema ./faying.schema.json
     """
-
     from faying.study.schema import schema_text
 
     if out is not None and as_json:

@@ -1,7 +1,7 @@
 """From the states of load cases to what a designer asks for: bolts, opening, slip."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,31 +19,17 @@ NAN = float("nan")
 NOTHING = 1e-3  # of a bolt's preload: of a smaller working load no share is told, for bending changes the force, too
 
 
-@dataclass(frozen=True, kw_only=True)
-class JointAnswers:
-    """What the joints do in each case; arrays (case, joint), see `LoadCases`."""
-
-    normal_force: Array
-    shear_force: Array
-    torque: Array
-    mean_pressure: Array
-    greatest_pressure: Array
-    opened: Array
-    sliding: Array
-    friction_needed: Array
-    friction_needed_worst: Array
-    worst_bolt: Index
-    dissipated: Array
-
-
 def joint_answers(
     structure: BoltedStructure,
     contacts: Sequence[LoadedContact],
     states: Sequence[LoadedState],
     dissipated: Sequence[Array],
     paths: LoadPaths,
-) -> JointAnswers:
-    """Return what the joints do under each state; dissipated (joint,) [J]: on the way to each."""
+) -> dict[str, Any]:
+    """Return what the joints do under each state, arrays (case, joint) by their names in `LoadCases`.
+
+    dissipated (joint,) [J]: on the way to each.
+    """
     found = [
         [
             _joint(contact, joint.interface, paths.owner[k], state.motions[k], state.tractions[k])
@@ -51,9 +37,8 @@ def joint_answers(
         ]
         for state in states
     ]
-    names = [one.name for one in fields(JointAnswers) if one.name != "dissipated"]
-    arrays: dict[str, Any] = {name: np.array([[one[name] for one in row] for row in found]) for name in names}
-    return JointAnswers(dissipated=np.array(dissipated), **arrays)
+    arrays = {name: np.array([[one[name] for one in row] for row in found]) for name in found[0][0]}
+    return arrays | {"dissipated": np.array(dissipated)}
 
 
 def _joint(contact: LoadedContact, interface: Any, bolt: Index, motion: Array, traction: Array) -> dict[str, float]:
@@ -120,30 +105,14 @@ class _Carried:
         )
 
 
-@dataclass(frozen=True, kw_only=True)
-class BoltAnswers:
-    """What the bolts do in each case; arrays (case, bolt), see `LoadCases`."""
-
-    bolt_force: Array
-    bolt_force_linear: Array
-    bolt_moment: Array
-    bolt_shear: Array
-    working_load: Array
-    load_factor: Array
-    transverse_load: Array
-    seat_pressure: Array
-    head_friction: Array
-    head_friction_needed: Array
-
-
 def bolt_answers(
     structure: BoltedStructure,
     contacts: Sequence[LoadedContact],
     preload: Array,
     states: Sequence[tuple[LoadedState, Array, Array]],
     paths: LoadPaths,
-) -> BoltAnswers:
-    """Return what the bolts do.
+) -> dict[str, Any]:
+    """Return what the bolts do, arrays (case, bolt) by their names in `LoadCases`.
 
     Args:
         structure: The structure.
@@ -167,18 +136,18 @@ def bolt_answers(
     force, load = preload + np.array(change), np.array(working)
     some = np.abs(load) > NOTHING * preload  # not where F_A is not known
     areas = np.array([least_seat_area(structure, one) for one in structure.fitted_bolts])
-    return BoltAnswers(
-        bolt_force=force,
-        bolt_force_linear=preload + np.array(linear),
-        bolt_moment=moment,
-        bolt_shear=shear,
-        working_load=load,
-        load_factor=np.where(some, np.array(change) / np.where(some, load, 1.0), NAN),
-        transverse_load=np.array(transverse),
-        seat_pressure=force / areas,
-        head_friction=np.array([_head_friction(fitted.bolt) for fitted in structure.fitted_bolts]),
-        head_friction_needed=np.where(force > 0, shear / np.where(force > 0, force, 1.0), NAN),
-    )
+    return {
+        "bolt_force": force,
+        "bolt_force_linear": preload + np.array(linear),
+        "bolt_moment": moment,
+        "bolt_shear": shear,
+        "working_load": load,
+        "load_factor": np.where(some, np.array(change) / np.where(some, load, 1.0), NAN),
+        "transverse_load": np.array(transverse),
+        "seat_pressure": force / areas,
+        "head_friction": np.array([_head_friction(fitted.bolt) for fitted in structure.fitted_bolts]),
+        "head_friction_needed": np.where(force > 0, shear / np.where(force > 0, force, 1.0), NAN),
+    }
 
 
 def bolt_changes(structure: BoltedStructure, state: LoadedState, motion: Array) -> Array:

@@ -74,15 +74,6 @@ def own_heat(structure: BoltedStructure, fitted: FittedSolidBolt, state: LoadedS
     return thermal_forces(structure.mesh, part, structure.materials[part], strain)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Crossing:
-    """What crosses joints: shear [N] (3,), and torque [N m] about a middle; friction bears it over a mean arm [m]."""
-
-    shear: Array
-    torque: float
-    arm: float
-
-
 def transverse_loads(
     structure: BoltedStructure,
     contacts: Sequence[LoadedContact],
@@ -102,19 +93,18 @@ def transverse_loads(
         depth = next(cut.depth for cut in paths.cuts[bolts[0]] if set(cut.joints) <= set(joints))
         places = np.stack([_at_depth(paths.lines[k], line, depth) for k in bolts])
         radii = places - places.mean(axis=0)
-        found = _crossing(structure, contacts, state, (joints, line.axis, places.mean(axis=0)))
-        shear, torque = found.shear, found.torque
+        shear, torque, arm = _crossing(structure, contacts, state, (joints, line.axis, places.mean(axis=0)))
         for k, radius in zip(bolts, radii, strict=True):
             if np.isfinite(ends[k].torsion):  # a bolt with a shank
                 force = np.sign(paths.lines[k].axis @ line.axis) * ends[k].shear
                 shear = shear + force
                 torque += float(np.cross(radius, force) @ line.axis) + ends[k].torsion
         spread = float((radii**2).sum())
-        if spread > len(bolts) * (COAXIAL * found.arm) ** 2:
+        if spread > len(bolts) * (COAXIAL * arm) ** 2:
             shares = shear / len(bolts) + torque / spread * np.cross(line.axis, radii)
             sizes = np.linalg.norm(shares, axis=1)
         else:
-            turned = torque / found.arm if found.arm > 0 else 0.0
+            turned = torque / arm if arm > 0 else 0.0
             sizes = np.full(len(bolts), np.hypot(np.linalg.norm(shear), turned) / len(bolts))
         out[list(bolts)] = np.maximum(out[list(bolts)], sizes)
     return out
@@ -130,8 +120,11 @@ def _crossing(
     contacts: Sequence[LoadedContact],
     state: LoadedState,
     where: tuple[Sequence[int], Array, Array],
-) -> _Crossing:
-    """What friction carries through joints, on the side from which an axis points; where: joints, axis, middle (3,)."""
+) -> tuple[Array, float, float]:
+    """What friction carries through joints, seen along an axis: shear [N] (3,), torque [N m] and arm [m].
+
+    The torque is that about a middle, which friction bears over the mean arm. where: joints, axis, middle (3,).
+    """
     joints, axis, middle = where
     shear, torque, press, arms = np.zeros(3), 0.0, 0.0, 0.0
     for j in joints:
@@ -144,4 +137,4 @@ def _crossing(
         pressed = weights * np.maximum(-traction[:, 0], 0.0)
         press += float(pressed.sum())
         arms += float(pressed @ distance_from(middle, axis, interface.positions))
-    return _Crossing(shear=shear, torque=torque, arm=arms / press if press > 0 else 0.0)
+    return shear, torque, arms / press if press > 0 else 0.0

@@ -129,7 +129,7 @@ class LoadCases(Recorded):
     shear: Array = variable("case point", "Pa", "shear by the load", "points/")
     intervals: LoadIntervals | None = None
     notes: tuple[Note, ...] = ()
-    provenance: Provenance = field(default_factory=lambda: Provenance(study="", files={}, versions={}, date=""))
+    provenance: Provenance = field(default_factory=Provenance)
 
     @property
     def slip_margin(self) -> Array:

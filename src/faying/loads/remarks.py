@@ -1,11 +1,10 @@
 """What there is to say of load cases: where the law ends, what opens, what friction is not known."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from faying.joint.bolted import BoltedStructure
-from faying.loads.answers import BoltAnswers, JointAnswers
 from faying.loads.contact import LoadedContact
 from faying.notes import Note, percent
 from faying.typing import Array
@@ -20,23 +19,23 @@ def load_notes(
     contacts: Sequence[LoadedContact],
     cases: Sequence[str],
     pressures: Sequence[Sequence[Array]],
-    bolts: BoltAnswers,
-    joints: JointAnswers,
+    found: Mapping[str, Array],
 ) -> list[Note]:
-    """Return the notes on all cases."""
+    """Return the notes on all cases; found: arrays of `LoadCases` by their names."""
     out = []
     for k, case in enumerate(cases):
         for j, (joint, contact) in enumerate(zip(structure.joints, contacts, strict=True)):
-            out += _joint(case, joint.name, contact, pressures[k][j], float(joints.opened[k, j]))
-            if joints.sliding[k, j] > WHOLLY:
-                borne = f"{show(float(joints.shear_force[k, j]), 'N')} and {show(float(joints.torque[k, j]), 'N*m')}"
+            out += _joint(case, joint.name, contact, pressures[k][j], float(found["opened"][k, j]))
+            if found["sliding"][k, j] > WHOLLY:
+                shear, torque = float(found["shear_force"][k, j]), float(found["torque"][k, j])
+                borne = f"{show(shear, 'N')} and {show(torque, 'N*m')}"
                 text = (
                     f"load {case!r}: {joint.name} slides on all of its area; friction carries {borne}, the bolts the "
                     "rest, by shear of their shanks (V)"
                 )
                 out.append(Note(code="load-slides", joint=joint.name, text=text))
         for b, fitted in enumerate(structure.fitted_bolts):
-            out += _bolt(case, fitted.bolt, float(bolts.bolt_force[k, b]))
+            out += _bolt(case, fitted.bolt, float(found["bolt_force"][k, b]))
     sticking = [joint.name for joint in structure.joints if joint.friction is None]
     if sticking:
         text = (

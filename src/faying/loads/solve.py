@@ -1,7 +1,7 @@
 """Load cases on a preloaded structure: bolts, opening, slip, modes about the loaded state."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from faying.joint.springs import Springs
 from faying.joint.state import State
 from faying.joint.support_check import check_motions, checked_preload
 from faying.loads.acting import Acting, acting, nothing
-from faying.loads.answers import NOTHING, BoltAnswers, bolt_answers, joint_answers
+from faying.loads.answers import NOTHING, bolt_answers, joint_answers
 from faying.loads.contact import LoadedContact
 from faying.loads.record import LoadCases
 from faying.loads.remarks import load_notes
@@ -37,9 +37,7 @@ from faying.study.load import Load, in_order
 from faying.study.study import Study
 from faying.typing import Array
 
-NOT_FROM_FILES = Provenance(study="", files={}, versions={}, date="")
 ROUNDING = 1e-9  # of the displacement under the preload
-STAGES = 5  # that are reported, beside the modes of each case
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +63,7 @@ class Preloaded:
     rest: tuple[Array, Any] | None
     modes: Callable[[Sequence[Springs[Any]]], tuple[Array, Any]]
     notes: tuple[Note, ...] = ()
-    provenance: Provenance = NOT_FROM_FILES
+    provenance: Provenance = field(default_factory=Provenance)
     head_friction: Array | None = None
 
 
@@ -212,11 +210,12 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
     dissipated = [np.sum([one.dissipated for one in found[load.name]], axis=0) for load in loads]
     paths = LoadPaths.of(structure)
     forces = np.array(base.preload.bolt_forces)
-    bolts = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), paths)
+    arrays = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), paths)
     if base.head_friction is not None:
-        known = np.where(np.isnan(base.head_friction), bolts.head_friction, base.head_friction)
-        bolts = replace(bolts, head_friction=known)
-    joints = joint_answers(structure, contacts, states, dissipated, paths)
+        stated = base.head_friction
+        arrays["head_friction"] = np.where(np.isnan(stated), arrays["head_friction"], stated)
+    arrays |= joint_answers(structure, contacts, states, dissipated, paths)
+    with_linear = arrays["bolt_force"], arrays["bolt_force_linear"]
     pressures = [[-traction[:, 0] for traction in state.tractions] for state in states]
     interfaces = [joint.interface for joint in structure.joints]
     shears = [np.concatenate([np.linalg.norm(one[:, 1:], axis=1) for one in state.tractions]) for state in states]
@@ -228,7 +227,7 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         after=tuple(load.after or "" for load in loads),
         bolts=tuple(bolt.name for bolt in structure.bolts),
         joints=tuple(joint.name for joint in structure.joints),
-        superposition=_departure(motions, straight, bolts, forces, base.preload.displacement),
+        superposition=_departure(motions, straight, with_linear, forces, base.preload.displacement),
         displacement=np.array([_greatest(one) for one in motions]),
         error=np.array([state.error for state in states]),
         bolt_preload=forces,
@@ -241,25 +240,25 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         pressure=np.array([np.concatenate(one) for one in pressures]),
         shear=np.array(shears),
         **_dowels(structure, motions),
-        notes=(*base.notes, *load_notes(structure, contacts, [load.name for load in loads], pressures, bolts, joints)),
+        notes=(*base.notes, *load_notes(structure, contacts, [load.name for load in loads], pressures, arrays)),
         provenance=base.provenance,
-        **vars(bolts),
-        **vars(joints),
+        **arrays,
         **modes,
     )
 
 
 def _departure(
-    motions: Sequence[Array], straight: Sequence[Array], bolts: BoltAnswers, preload: Array, rest: Array
+    motions: Sequence[Array], straight: Sequence[Array], forces: tuple[Array, Array], preload: Array, rest: Array
 ) -> Array:
     """How far the answers are from the linear ones, over these: of displacement or bolt forces, the greater (case,).
 
+    forces: of the bolts [N] (case, bolt), as they are and by the linear answer.
     A change of force counts as NOTHING times the preload at least: where a load changes none, rounding is all there is.
     So it is with a displacement of ROUNDING of that under the preload. Where a load that is taken off leaves slip, the
     linear answer is none, and the departure is all of the answer: 1.
     """
     out, floor, round_off = [], NOTHING * float(preload.max(initial=0.0)), ROUNDING * _greatest(rest)
-    for moved, line, here, there in zip(motions, straight, bolts.bolt_force, bolts.bolt_force_linear, strict=True):
+    for moved, line, here, there in zip(motions, straight, *forces, strict=True):
         size, way = _greatest(line), _greatest(moved)
         force = max(float(np.abs(there - preload).max(initial=0.0)), floor)
         apart = _greatest(moved - line) / size if size > NOTHING * way else 1.0

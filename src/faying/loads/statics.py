@@ -123,7 +123,6 @@ class LoadStatics:
         self._relative = [np.zeros((3 * len(contact.weights), 0)) for _, contact in self.joints]
         self._single = [np.zeros((len(contact.weights), 3, 0), dtype=np.float32) for _, contact in self.joints]
         self._at_rest = [contact.advance(contact.start, contact.rest)[1] for _, contact in self.joints]
-        self.solutions = 0  # by the factorisation
 
     @property
     def size(self) -> int:
@@ -160,7 +159,7 @@ class LoadStatics:
             x = self._vectors.values.T @ loads
             rest = loads - self._images.values @ x
             z = self._solved(rest)
-            left = np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, z), 0.0))
+            left = _energy_roots(rest, z)
             scale = np.linalg.norm(x, axis=0)
             if np.all(left <= STRAIGHT * scale):
                 break
@@ -205,12 +204,13 @@ class LoadStatics:
         return found
 
     def _task(self, name: str, before: LoadedState, target: Acting) -> _Task:
-        moved = tuple(np.asarray(interface.relative @ target.moved).reshape(-1, 3) for interface, _ in self.joints)
-        x = np.zeros(self.size)
-        x[: len(before.coordinates)] = before.coordinates
-        return _Task(
-            name, target, self._offset(target), self._offset(before.acting), moved, before.contact, x, np.zeros((0, 2))
-        )
+        offset, from_there = self._offset(target), self._offset(before.acting)
+        moved, x = tuple(self._relative_motions(target.moved)), self._in_basis(before.coordinates)
+        return _Task(name, target, offset, from_there, moved, before.contact, x, np.zeros((0, 2)))
+
+    def _in_basis(self, x: Array) -> Array:
+        """Coordinates (m,) in a basis that has grown since."""
+        return np.append(x, np.zeros(self.size - len(x)))
 
     def _project(self, task: _Task) -> None:
         """Project the loads of a task on vectors that are new."""
@@ -226,10 +226,7 @@ class LoadStatics:
     @cached_property
     def _least(self) -> float:
         """The same of the forces of the joints under the preload, times SMALLEST."""
-        total = np.zeros(self.stiffness.shape[0])
-        for (interface, contact), traction in zip(self.joints, self._at_rest, strict=True):
-            total += interface.relative.T @ (contact.weights[:, None] * traction).ravel()
-        total = admissible(total, self._rigid, self.fixed)
+        total = admissible(self._forces_of(self._at_rest), self._rigid, self.fixed)
         return SMALLEST * float(np.sqrt(max(float(total @ self._solved(total[:, None])[:, 0]), 0.0)))
 
     def _settle(self, tasks: Sequence[_Task], tolerances: Sequence[float]) -> None:
@@ -246,7 +243,7 @@ class LoadStatics:
             if not np.all(np.isfinite(rest)):
                 raise self._lost(tasks[left[int(np.argmin(np.isfinite(rest).all(axis=0)))]])
             z = self._solved(rest)
-            sizes = np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, z), 0.0))
+            sizes = _energy_roots(rest, z)
             for size, k in zip(sizes, left, strict=True):
                 tasks[k].error = float(size) / self._scale(tasks[k]) if self.size or size == 0 else np.inf
             more = [column for column, k in enumerate(left) if tasks[k].error > tolerances[k]]
@@ -266,24 +263,20 @@ class LoadStatics:
         for _ in range(ROUNDS_AHEAD):
             rest = np.stack([self._turned(task, column) for task, column in zip(tasks, new.T, strict=True)], axis=1)
             new = self._solved(rest)
-            size = np.sqrt(np.maximum(np.einsum("ij,ij->j", rest, new), 0.0))
             vectors.append(new)
-            sizes.append(size)
+            sizes.append(_energy_roots(rest, new))
         return np.concatenate(vectors, axis=1), np.concatenate(sizes)
 
     def _turned(self, task: _Task, motion: Array) -> Array:
         """Forces [N] (unknowns,) by which joints depart from their springs, of a small motion (unknowns,)."""
         assert task.local is not None
-        total = np.zeros_like(motion)
-        for (interface, contact), change in zip(self.joints, task.local.tangents, strict=True):
-            by = np.asarray(interface.relative @ motion).reshape(-1, 3, 1)
-            total -= interface.relative.T @ (contact.weights[:, None] * np.matmul(change, by)[:, :, 0]).ravel()
-        return admissible(total, self._rigid, self.fixed)
+        pairs = zip(self._relative_motions(motion), task.local.tangents, strict=True)
+        total = self._forces_of([np.matmul(change, by[:, :, None])[:, :, 0] for by, change in pairs])
+        return admissible(-total, self._rigid, self.fixed)
 
     def _balance(self, task: _Task, tolerance: float) -> None:
         """Newton's iteration within the basis."""
-        x = np.zeros(self.size)
-        x[: len(task.x)] = task.x
+        x = self._in_basis(task.x)
         # vectors that are new have changed no motion yet
         local = task.local or self._local(task, x)
         left = self._left(task, x, local)
@@ -357,9 +350,8 @@ class LoadStatics:
         out -= combined(self._images.values, np.stack([task.x for task in tasks], axis=1))
         for column, task in enumerate(tasks):
             assert task.local is not None
-            for (interface, contact), local in zip(self.joints, task.local.tractions, strict=True):
-                out[:, column] -= interface.relative.T @ (contact.weights[:, None] * local).ravel()
-            out[:, column] = admissible(out[:, column], self._rigid, self.fixed)
+            left = out[:, column] - self._forces_of(task.local.tractions)
+            out[:, column] = admissible(left, self._rigid, self.fixed)
         return out
 
     def _state(self, task: _Task) -> LoadedState:
@@ -390,18 +382,24 @@ class LoadStatics:
 
     def _spring_forces(self, acting: Acting) -> Array:
         """What the springs of the joints at the preload resist of d [N] (unknowns,)."""
-        total = np.zeros_like(acting.force)
-        if not np.any(acting.moved):
-            return total
-        for interface, contact in self.joints:
-            by = np.asarray(interface.relative @ acting.moved).reshape(-1, 3)
-            local = contact.weights[:, None] * np.stack([contact.k_n, contact.k_t, contact.k_t], axis=1) * by
-            total += interface.relative.T @ local.ravel()
+        moves = self._relative_motions(acting.moved)
+        springs = (np.stack([contact.k_n, contact.k_t, contact.k_t], axis=1) for _, contact in self.joints)
+        total = self._forces_of([local * by for local, by in zip(springs, moves, strict=True)])
         return admissible(total, self._rigid, self.fixed)
+
+    def _relative_motions(self, motion: Array) -> list[Array]:
+        """Relative motion of each joint (q, 3) [m] by a displacement (unknowns,)."""
+        return [np.asarray(interface.relative @ motion).reshape(-1, 3) for interface, _ in self.joints]
+
+    def _forces_of(self, tractions: Sequence[Array]) -> Array:
+        """Nodal forces [N] (unknowns,) of the tractions of each joint (q, 3) [Pa]."""
+        total = np.zeros(self.stiffness.shape[0])
+        for (interface, contact), traction in zip(self.joints, tractions, strict=True):
+            total += interface.relative.T @ (contact.weights[:, None] * traction).ravel()
+        return total
 
     def _solved(self, forces: Array) -> Array:
         """Displacements near K_0^-1 forces (unknowns, k)."""
-        self.solutions += forces.shape[1]
         found = np.asarray(self.factor.solve(forces))
         if self._rigid.size:
             found = found - self._rigid @ (self._rigid.T @ found)
@@ -439,7 +437,7 @@ class LoadStatics:
 
     def _lost(self, task: _Task) -> NotConverged:
         """What to say of a load whose iteration stops short."""
-        state = self._state(replace_size(task, self.size))
+        state = self._state(replace(task, x=self._in_basis(task.x)))
         apart = [
             k
             for k, (contact, motion) in enumerate(zip((c for _, c in self.joints), state.motions, strict=True))
@@ -471,6 +469,11 @@ class LoadStatics:
         )
 
 
+def _energy_roots(forces: Array, motions: Array) -> Array:
+    """Roots of twice the energies [J^0.5] (k,) of forces [N] on motions [m], both (unknowns, k)."""
+    return np.asarray(np.sqrt(np.maximum(np.einsum("ij,ij->j", forces, motions), 0.0)))
+
+
 def _greatest_ratio(traction: Array) -> float:
     """The greatest shear over pressure of points (q, 3) that touch [-]; 0 where none does."""
     shut = traction[:, 0] < 0
@@ -480,10 +483,3 @@ def _greatest_ratio(traction: Array) -> float:
 def _stands(errors: Sequence[float]) -> bool:
     """Whether errors, round by round, fall no further."""
     return len(errors) > STAGNANT_ROUNDS and min(errors[-STAGNANT_ROUNDS:]) > min(errors[:-STAGNANT_ROUNDS]) / 2
-
-
-def replace_size(task: _Task, size: int) -> _Task:
-    """The task with coordinates of the whole basis (size,)."""
-    x = np.zeros(size)
-    x[: len(task.x)] = task.x
-    return replace(task, x=x)

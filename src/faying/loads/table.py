@@ -59,7 +59,7 @@ def bolt_rows(found: LoadCases, k: int) -> Rows:
         ("change", map(signed, force - rest), ""),
         ("linear", map(signed, found.bolt_force_linear[k] - rest), ""),
         ("F_A", map(signed, found.working_load[k]), ""),
-        ("Phi", [_number(factor, ".3f") for factor in found.load_factor[k]], ""),
+        ("Phi", found.load_factor[k], ".3f"),
         ("M", map(_short, found.bolt_moment[k]), ""),
         ("V", map(_short, found.bolt_shear[k]), ""),
         ("seat", map(_short, found.seat_pressure[k] / 1e6), ""),
@@ -154,10 +154,6 @@ def _short(value: float, sign: str = "") -> str:
     if abs(value) < 1e-3:
         return "0"
     return f"{value:{sign}.0f}" if abs(value) >= 100 else f"{value:{sign}.3g}"
-
-
-def _number(value: float, form: str) -> str:
-    return "-" if not np.isfinite(value) else format(value, form)
 
 
 def _cut(name: str, most: int) -> str:

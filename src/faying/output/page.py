@@ -13,51 +13,7 @@ from faying.output.table import Rows
 from faying.style import drawn
 from faying.typeset import unit
 
-STYLE = """
-:root{--ink:#1c2733;--soft:#52616f;--line:#d5dde5;--head:#f3f6f9;--back:#fff;--flag:#fff4e0;--accent:#0a63b0}
-body{font:15px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:var(--ink)}
-body,html{background:var(--back)}h1,h2,h3,li,summary{overflow-wrap:anywhere}td,th{overflow-wrap:break-word}
-h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem;border-bottom:1px solid var(--line);padding-bottom:.2rem}
-h3{font-size:1rem;margin:1.2rem 0 .3rem}
-table{border-collapse:collapse;font-size:.84rem;font-variant-numeric:tabular-nums;margin:.6rem 0}
-th,td{padding:.18rem .7rem;text-align:right;border-bottom:1px solid var(--line)}th{background:var(--head)}
-td:first-child,th:first-child,.words :is(td,th){text-align:left}.words th{font-weight:400}.scroll{overflow-x:auto}
-[data-table=joints] :is(td,th):nth-child(2),[data-table=bolting] :is(td,th):nth-child(2){text-align:left}
-.flag{background:var(--flag);border-left:4px solid #e0912f;padding:.4rem .8rem;margin:.4rem 0}
-figure{margin:1rem 0}figure svg,figure img{width:100%;height:auto;background:#fff}
-.lead{font-size:1.1rem}a{color:var(--accent)}.contents{list-style:none;display:flex;flex-wrap:wrap;gap:.2rem 1.2rem;
-padding:.5rem 0;border-block:1px solid var(--line)}
-.pair{display:flex;flex-wrap:wrap;gap:.5rem 1.5rem;align-items:flex-start}
-.pair>figure{flex:1 1 30rem;min-width:min(30rem,100%);margin:.6rem 0}.pair>.scroll{flex:0 1 auto}
-[data-table=answer] :is(td,th):nth-child(2),[data-table=narrowing] :is(td,th):nth-child(2){text-align:left}
-h4{font-size:.95rem;margin:.9rem 0 .2rem}
-figcaption,.soft{font-size:.85rem;color:var(--soft)}
-pre{font:13px/1.45 ui-monospace,monospace;overflow-x:auto;background:var(--head);padding:.7rem .9rem}
-summary{cursor:pointer;font-weight:600;margin:.6rem 0}code{font-size:.92em;overflow-wrap:anywhere}
-#stage{height:min(45rem,94vh);min-height:30rem;
-border:1px solid var(--line);border-radius:6px;overflow:hidden;display:none}
-.live #stage{display:block}
-.live .static,.has-response .of-response,.has-backbones .of-backbones,
-.has-test-frf .of-test-frf{display:none}
-button.link{font:inherit;color:var(--accent);background:none;border:0;padding:0;cursor:pointer;text-align:inherit;
-text-decoration:underline;text-decoration-color:transparent;font-variant-numeric:inherit}
-button.link:is(:hover,:focus-visible){text-decoration-color:currentcolor}
-tr.now td{background:color-mix(in srgb,var(--accent) 12%,var(--back))}
-@media (max-width:760px){#stage{height:auto}}
-@media (prefers-color-scheme:dark){:root{--ink:#e3e8ee;--soft:#a3afbb;--line:#38424d;--head:#1a2027;--back:#14181d;
---flag:#33291a;--accent:#63b0f0;color-scheme:dark}figure svg,figure img{border-radius:6px}}
-@page{size:A4;margin:16mm 14mm}
-@media print{:root{--ink:#000;--soft:#333;--line:#bbb;--head:#eee;--back:#fff;--flag:#fff4e0;--accent:#000}
-body{max-width:none;margin:0;padding:0;font-size:9.5pt}nav,#stage,.live #stage,[data-curves],#why{display:none}
-.live .static,.has-response .of-response,.has-backbones .of-backbones,
-.has-test-frf .of-test-frf{display:block}figure,.flag,tr{break-inside:avoid}
-figure svg,figure img{max-height:235mm;object-fit:contain}
-h2,h3,h4,summary{break-after:avoid}thead{display:table-header-group}.scroll{overflow:visible;break-inside:avoid-page}
-table{font-size:8pt}table.words{break-inside:avoid}
-th,td{padding:.1rem .4rem}.pair{display:block}pre{white-space:pre-wrap;font-size:7.5pt}
-tr.now td{background:none}
-button.link{color:inherit}}
-"""
+STYLE = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
 GREEK = {"delta": "δ", "Phi": "Φ"}
 BITMAPS = ("modes", "shapes")  # tens of thousands of polygons: a bitmap is smaller than their outlines
 

@@ -13,7 +13,7 @@ from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.difference import of_joint
 from faying.result.run_record import DampedLevels, preload_slope
-from faying.text import in_columns
+from faying.text import in_columns, or_dash
 from faying.typing import Array
 from faying.units import load_text, show
 
@@ -173,11 +173,6 @@ def _one_or_ends(values: Array, unit: str) -> str:
     return f"{least} {unit}" if least == greatest else f"{least} .. {greatest} {unit}"
 
 
-def _or_dash(value: float, form: str) -> str:
-    """A number, or a dash where there is none: a mode of the test without partner."""
-    return "-" if np.isnan(value) else format(value, form)
-
-
 def comparison(result: Result) -> Rows:
     """One row per preload and source, errors relative to the reference; then the change with preload for each."""
     c = result.comparison
@@ -191,13 +186,13 @@ def comparison(result: Result) -> Rows:
     for i, load in enumerate(result.loads):
         rows.append([load_text(load), f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
         for name, values in (*theirs, *ours):
-            rows.append(["", f"{name} [Hz]", *(_or_dash(f, ".1f") for f in values[i])])
+            rows.append(["", f"{name} [Hz]", *(or_dash(f, ".1f") for f in values[i])])
             errors = 100 * (values[i] / c.frequencies[i] - 1)
-            rows.append(["", f"{name} error [%]", *(_or_dash(e, "+.2f") for e in errors)])
+            rows.append(["", f"{name} error [%]", *(or_dash(e, "+.2f") for e in errors)])
     if len(result.loads) > 1:
         for name, values in ((c.reference, c.frequencies), *theirs, *ours):
             slope = preload_slope(values, result.loads) * 1e3
-            rows.append(["d f/d preload", f"{name} [Hz/kN]", *(_or_dash(s, "+.3f") for s in slope)])
+            rows.append(["d f/d preload", f"{name} [Hz/kN]", *(or_dash(s, "+.3f") for s in slope)])
     return rows
 
 
@@ -254,10 +249,10 @@ def of_quantity(result: Result, name: str) -> Rows:
     meta, values = result.shown()[name], np.asarray(getattr(result, name))
     loads = [load_text(load) for load in result.loads]
     if meta.dims == ("load", "mode"):
-        cells = ([_or_dash(v, meta.shown.form) for v in row] for row in values.T)
+        cells = ([or_dash(v, meta.shown.form) for v in row] for row in values.T)
         return by_mode((f"{load} [{meta.unit_text}]" for load in loads), cells)
     rows: Rows = [["preload", *(f"{label} [{meta.unit_text}]" for label in result.labels()[meta.dims[1]])]]
-    rows += [[load, *(_or_dash(v, meta.shown.form) for v in row)] for load, row in zip(loads, values, strict=True)]
+    rows += [[load, *(or_dash(v, meta.shown.form) for v in row)] for load, row in zip(loads, values, strict=True)]
     return rows
 
 
@@ -314,7 +309,7 @@ def modal_forces(result: Result) -> Rows:
     rows: Rows = [["mode", *(f"{name} [{unit}]" for name in result.bolts for unit in ("N/um", "N/(m/s2)"))]]
     for j in range(result.frequencies.shape[1]):
         cells = zip(b.modal_force[-1, j], b.modal_force_by_acceleration[-1, j], strict=True)
-        rows.append([str(j + 1), *(text for f, a in cells for text in (_or_dash(1e-6 * f, ".3g"), _or_dash(a, ".3g")))])
+        rows.append([str(j + 1), *(text for f, a in cells for text in (or_dash(1e-6 * f, ".3g"), or_dash(a, ".3g")))])
     return rows
 
 
@@ -329,7 +324,7 @@ def conductance(result: Result) -> Rows:
         return []
     rows: Rows = [["preload", *(f"{name} [{unit}]" for _, unit in fields for name in result.joints)]]
     for i, load in enumerate(result.loads):
-        rows.append([load_text(load), *(_or_dash(v, ".4g") for values, _ in fields for v in values[i])])
+        rows.append([load_text(load), *(or_dash(v, ".4g") for values, _ in fields for v in values[i])])
     return rows
 
 
@@ -395,7 +390,7 @@ def _static_cycle(curve: Backbone, level: float) -> str:
     found = curve.witness
     if found is None or not (here := np.abs(found.acceleration / level - 1) < 1e-9).any():
         return ""
-    return f"{found.frequency_change[here][0]:+.2%}, {_or_dash(found.damping_change[here][0], '+.1%')}"
+    return f"{found.frequency_change[here][0]:+.2%}, {or_dash(found.damping_change[here][0], '+.1%')}"
 
 
 def backbone_measured(curve: Backbone) -> Rows:
@@ -435,5 +430,5 @@ def backbone_bounds(curve: Backbone) -> Rows:
         ("samples", "half of the instants of a cycle"),
     ):
         f, z = (getattr(bounds, f"{name}_{of}") for of in ("frequency", "damping"))
-        rows.append([words, _or_dash(f, "+.1e"), _or_dash(z, "+.2%")])
+        rows.append([words, or_dash(f, "+.1e"), or_dash(z, "+.2%")])
     return [*rows, ["residual of the full equations, in energy", f"{bounds.residual:.1e}", ""]]

@@ -297,13 +297,8 @@ class Backbone(Recorded):
         }
         for name in ("friction", "joints", "bolts", "laws"):
             out[name] = list(getattr(self, name))
-        for name, unit in (
-            ("preload", "N"),
-            ("linear_frequency", "Hz"),
-            ("rest_damping", "1"),
-            ("shape_at", "kg^-1/2"),
-        ):
-            out[name] = {"unit": unit, "values": getattr(self, name)}
+        units = {"preload": "N", "linear_frequency": "Hz", "rest_damping": "1", "shape_at": "kg^-1/2"}
+        out |= {name: {"unit": unit, "values": getattr(self, name)} for name, unit in units.items()}
         out |= in_units(self, without=("point",))
         if self.witness is not None:
             out["witness"] = in_units(self.witness)

@@ -11,7 +11,7 @@ from faying.misuse import checked_call
 from faying.numerics.follow import partners
 from faying.result.result import Result
 from faying.style import Summary
-from faying.text import csv_text, few
+from faying.text import csv_text, few, or_dash
 from faying.typing import Array, Index
 from faying.units import load_text
 
@@ -131,9 +131,9 @@ class RunDifference(Summary):
                     f"{i + 1}" if i == j else f"{i + 1}, {j + 1}",
                     *(f"{one[k]:.2f}" for one in f),
                     f"{100 * self.frequency_change[k]:+.2f}",
-                    *(_or_dash(one[k], ".3g") for one in loss),
-                    _or_dash(100 * (loss[1][k] / loss[0][k] - 1) if loss[0][k] > 0 else np.nan, "+.1f"),
-                    _or_dash(self.mac[k], ".3f"),
+                    *(or_dash(one[k], ".3g") for one in loss),
+                    or_dash(100 * (loss[1][k] / loss[0][k] - 1) if loss[0][k] > 0 else np.nan, "+.1f"),
+                    or_dash(self.mac[k], ".3f"),
                 ]
             )
         return rows
@@ -223,10 +223,6 @@ def compare_runs(first: Result, second: Result, preload: float | str | None = No
             listed = ", ".join(f"{k + 1} ({one.frequencies[loads[side], k]:.0f} Hz)" for k in left)
             notes.append(f"modes of the {which} run without a partner: {listed}")
     return RunDifference(first=first, second=second, loads=loads, modes=modes, mac=alike, notes=tuple(notes))
-
-
-def _or_dash(value: float, form: str) -> str:
-    return f"{value:{form}}" if np.isfinite(value) else "-"
 
 
 def shared_preloads(first: Result, second: Result) -> list[tuple[int, int]]:

@@ -150,7 +150,11 @@ class Recorded(Summary):
     def tree(self) -> Group:
         """Return it as a tree of named arrays, as a file holds it."""
         group = to_group(self)
-        coordinates = {name: _coordinate(name, item) for name, item in self.labels().items()}
+        labels = {
+            name: np.asarray(one, object if isinstance(one, tuple | list) else None)
+            for name, one in self.labels().items()
+        }
+        coordinates = {name: Variable(dims=(name,), values=values) for name, values in labels.items()}
         attributes = {"Conventions": "CF-1.11", RECORD: self.KIND, **group.attributes}
         return with_preload(replace(group, variables={**coordinates, **group.variables}, attributes=attributes))
 
@@ -233,11 +237,16 @@ class Recorded(Summary):
         Raises:
             InputError: There is no such group; the text lists the groups.
         """
-        tree = self.tree()
-        found = {name: one for name, one in tree.groups.items() if one.variables}
+        found = {name: one.variables for name, one in self.tree().groups.items() if one.variables}
         if not isinstance(group, str) or group not in found:
             raise InputError(f"group = {shortened(group)}; the groups are {', '.join(map(repr, found))}")
-        return table_of(found[group], tree.variables)
+        dims = next(one.dims for name, one in found[group].items() if name != PRELOAD)
+        columns = {name: one.unit for name, one in found[group].items() if one.dims and set(one.dims) <= set(dims)}
+        columns = {name: columns[name] for name in sorted(columns, key=lambda name: name != PRELOAD)}
+        data = self.to_xarray()[group].to_dataset()[list(columns)]
+        table = data.to_dataframe(dim_order=dims)[list(columns)]
+        table.attrs["units"] = columns
+        return table
 
 
 def array_of(name: str, given: Any, meta: RecordedQuantity) -> Any:
@@ -314,11 +323,6 @@ def to_group(value: Any) -> Group:
     return Group(variables=root, attributes=attributes, groups=groups)
 
 
-def _coordinate(name: str, item: Any) -> Variable:
-    text = isinstance(item, tuple | list)
-    return Variable(dims=(name,), values=np.asarray(item, dtype=object if text else None))
-
-
 def with_preload(tree: Group) -> Group:
     """A tree whose loads have labels, with the preloads of the root as a coordinate of each group with loads."""
     preload = tree.variables.get(PRELOAD)
@@ -342,26 +346,6 @@ def load_texts(loads: Array) -> tuple[str, ...]:
         if len(set(words)) == len(words):
             return words
     return tuple(repr(float(load)) for load in loads)
-
-
-def table_of(group: Group, root: Mapping[str, Variable]) -> "DataFrame":
-    """The variables of a group as a table, with the labels of its dimensions; see `Recorded.to_dataframe`."""
-    import pandas
-
-    first = next(one for name, one in group.variables.items() if name != PRELOAD)
-    sizes = dict(zip(first.dims, first.values.shape, strict=True))
-    columns_of = {name: one for name, one in group.variables.items() if one.dims and set(one.dims) <= set(first.dims)}
-    labels = [root[dim].values if dim in root else np.arange(size) for dim, size in sizes.items()]
-    index = pandas.MultiIndex.from_product(labels, names=list(sizes))
-    columns = {}
-    for name, one in sorted(columns_of.items(), key=lambda item: item[0] != PRELOAD):
-        shape = [sizes[dim] if dim in one.dims else 1 for dim in sizes]
-        order = sorted(range(len(one.dims)), key=lambda k: list(sizes).index(one.dims[k]))
-        values = one.values.transpose(order).reshape(shape)
-        columns[name] = np.broadcast_to(values, tuple(sizes.values())).ravel()
-    table = pandas.DataFrame(columns, index=index)
-    table.attrs["units"] = {name: one.unit for name, one in columns_of.items()}
-    return table
 
 
 def read_tree(path: str | Path, kind: str = "file", command: str = "") -> Group:

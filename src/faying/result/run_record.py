@@ -205,18 +205,10 @@ class RunRecord(Recorded):
         "load", "1", "share of the joints above the end of their law", "joints/above_range_share"
     )
     low: Array | None = optional(
-        "load mode",
-        "Hz",
-        "frequency at the lower end of the laws' range",
-        "modes/frequency_low",
-        shown="low",
+        "load mode", "Hz", "frequency at the lower end of the laws' range", "modes/frequency_low", shown="low"
     )
     high: Array | None = optional(
-        "load mode",
-        "Hz",
-        "frequency at the upper end of the laws' range",
-        "modes/frequency_high",
-        shown="high",
+        "load mode", "Hz", "frequency at the upper end of the laws' range", "modes/frequency_high", shown="high"
     )
     interval_best: Array | None = optional(
         "load mode", "Hz", "best estimate of the frequency, the median of all that is not known", "modes/", shown="best"
@@ -231,11 +223,7 @@ class RunRecord(Recorded):
         "source end load mode", "1", "change of ln f at 5 and at 95 % of one thing that is not known", "modes/"
     )
     mesh_error: Array | None = optional(
-        "load mode",
-        "1",
-        "estimated relative error of the frequency by the mesh",
-        "modes/",
-        shown="error of the mesh",
+        "load mode", "1", "estimated relative error of the frequency by the mesh", "modes/", shown="error of the mesh"
     )
     levels: Array | None = optional(
         "level", "m/s2", "peak acceleration of the point that moves most", "modes/level_acceleration"
@@ -437,10 +425,8 @@ class RunRecord(Recorded):
         if self.joints:
             out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
             out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
-        out["interval_sources"], out["alternatives"] = list(self.interval_sources), list(self.alternatives)
-        out["parts"] = list(self.parts)
-        out["dowels"] = list(self.dowels)
-        out |= {"joints": list(self.joints), "bolts": list(self.bolts), "tightening": list(self.tightening)}
+        for name in ("interval_sources", "alternatives", "parts", "dowels", "joints", "bolts", "tightening"):
+            out[name] = list(getattr(self, name))
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
         if self.comparison is not None:
             c = self.comparison

@@ -4,10 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal, TypeVar, get_args
 
 from faying.bolt.bolt import Bolt, BoltPlace, each_in_its_place
-from faying.bolt.dowel import Dowel, DowelPlace
 from faying.bolt.solid_bolt import SolidBolt, SolidPlace
 from faying.case.case import SIZES, interface_of, materials_of, name_faults, surfaces_of
 from faying.case.places import named_points, on_structure
@@ -36,7 +35,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
 from faying.style import Summary
-from faying.text import cut, toml
+from faying.text import cut
 from faying.units import show, show_area
 
 MAX_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
@@ -44,6 +43,7 @@ TOO_MUCH = 1.5  # times the free memory: a fault, as estimated unknowns are with
 COARSER = tuple(1.1**k for k in range(1, 18))  # times a size, to five times: beyond, a mesh says nothing of the parts
 MAX_ROWS = 8  # findings in a summary
 Level = Literal["fault", "note", "ok"]
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,14 +127,13 @@ class _Findings:
         if found not in self.out:
             self.out.append(found)
 
-    def tried(self, code: str, key: str, work: Callable[[], object]) -> bool:
-        """Do some work; what it refuses is a fault. Returns whether it was done."""
+    def tried(self, code: str, key: str, work: Callable[[], Made]) -> Made | None:
+        """Return what some work makes; what it refuses is a fault, and makes nothing."""
         try:
-            work()
+            return work()
         except FayingError as fault:
             self.add("fault", code, str(fault), key)
-            return False
-        return True
+            return None
 
 
 @checked_call
@@ -155,7 +154,7 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     file = Path(path)
     text = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
     found = _Findings(lines_of(text))
-    study = _read(file, found)
+    study = _read(file, text, found)
     if study is None:
         return Checked(findings=tuple(found.out))
     found.add("ok", "keys", f"keys, units and files of {file.name}")
@@ -167,7 +166,10 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     owner = {name: some[0].part for name, some in named.items()}
     for key, fault in name_faults(study, list(facts.by_part), owner, () if ready is None else ready.bonded):
         found.add("fault", "names", fault, key)
-    _sizes(study, named, found)
+    for name in study.geometry.face_size:
+        if name not in named:
+            text = f"size of face {name!r}: the faces are {', '.join(sorted(named))}"
+            found.add("fault", "names", text, f"geometry.face_size.{name}")
     if len(found.out) > before and any(one.level == "fault" for one in found.out):
         return Checked(findings=tuple(found.out), expected=_expected(study, facts, named, ready, found))
     found.add("ok", "names", f"{len(facts.parts)} parts and {len(named)} named faces of {facts.file}")
@@ -198,7 +200,7 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     return Checked(findings=tuple(found.out), expected=expected)
 
 
-def _read(file: Path, found: _Findings) -> Study | None:
+def _read(file: Path, text: str, found: _Findings) -> Study | None:
     try:
         return Study.read(file)
     except StudyFaults as faults:
@@ -207,17 +209,7 @@ def _read(file: Path, found: _Findings) -> Study | None:
     except InputError as fault:
         if not file.is_file():
             raise
-        found.out.append(Finding(level="fault", code="toml", text=str(fault), line=_toml_line(file)))
-    return None
-
-
-def _toml_line(file: Path) -> int | None:
-    """The line at which a file stops being TOML."""
-    text = file.read_text(encoding="utf-8", errors="replace")
-    try:
-        toml(text)
-    except ValueError as fault:
-        return line_of_fault(fault, text)
+        found.out.append(Finding(level="fault", code="toml", text=str(fault), line=line_of_fault(fault, text)))
     return None
 
 
@@ -264,11 +256,10 @@ def _named(study: Study, facts: GeometryFacts, found: _Findings) -> dict[str, tu
             text = f"face {label!r}: the file has a face of this name already; choose another name"
             found.add("fault", "selector", text, key)
             continue
-
-        def select(label: str = label) -> None:
-            named[label] = chosen(label, study.geometry.face[label], facts, snap=study.geometry.snap)
-
-        if not found.tried("selector", key, select) and selector.part in facts.by_part:
+        faces = found.tried("selector", key, partial(chosen, label, selector, facts, snap=study.geometry.snap))
+        if faces is not None:
+            named[label] = faces
+        elif selector.part in facts.by_part:
             named[label] = facts.by_part[selector.part][:1]  # so that its name is not a second fault
     return named
 
@@ -296,19 +287,17 @@ def _meshed(
         return None
     if unknowns_of(facts, spec.size, spec.face_size, named) > MAX_MESHED:
         return None
-    made: list[Mesh] = []
-    found.tried("mesh", "geometry.size", lambda: made.append(mesh_of(spec)))
-    return made[0] if made else None
+    return found.tried("mesh", "geometry.size", partial(mesh_of, spec))
 
 
 def _surfaces(study: Study, found: _Findings) -> tuple[Surface, ...]:
     """The surface of each joint; none where one of them cannot be read, which is a fault."""
-    key, out = "surface" if study.surface is not None else "joint[1].surface", list[Surface]()
-    found.tried("surface", key, lambda: out.extend(surfaces_of(study)))
+    key = "surface" if study.surface is not None else "joint[1].surface"
+    out = found.tried("surface", key, partial(surfaces_of, study)) or ()
     for surface in dict.fromkeys(out):
         for text in surface.warnings:
             found.add("note", "surface", text, key)
-    return tuple(out)
+    return out
 
 
 def _laid(study: Study, mesh: Mesh, surfaces: Sequence[Surface], found: _Findings) -> None:
@@ -323,14 +312,6 @@ def _laid(study: Study, mesh: Mesh, surfaces: Sequence[Surface], found: _Finding
             found.tried("bolt", f"bolt[{k}].faces", partial(bolt.fitted, mesh, materials))
     for k, dowel in enumerate(study.dowels, 1):
         found.tried("dowel", f"dowel[{k}].walls", partial(dowel.fitted, mesh))
-
-
-def _sizes(study: Study, named: Mapping[str, tuple[FaceFacts, ...]], found: _Findings) -> None:
-    """Names of faces that are meshed finer."""
-    for name in study.geometry.face_size:
-        if name not in named:
-            text = f"size of face {name!r}: the faces are {', '.join(sorted(named))}"
-            found.add("fault", "names", text, f"geometry.face_size.{name}")
 
 
 def _expected(
@@ -419,6 +400,10 @@ def _contacts(sketch: Sketch, found: _Findings) -> None:
             found.add("ok", "contact", f"joint {joint.name!r}: its faces touch over {show_area(area)}", key)
 
 
+def _placed(bolt: Bolt | SolidBolt, mesh: FaceTriangles) -> BoltPlace | SolidPlace:
+    return SolidPlace.of(bolt, mesh) if isinstance(bolt, SolidBolt) else bolt.placed(mesh)
+
+
 def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:
     """Bolts in their places: seats that look away from each other, axes in their holes, forces that they bear.
 
@@ -431,19 +416,13 @@ def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:
     met |= shared
     well: dict[str, list[tuple[str, str]]] = {}  # what is said -> bolts and keys of which it is
     for k, bolt in enumerate(sketch.study.bolts, 1):
-
-        def place(bolt: Bolt | SolidBolt = bolt) -> None:
-            if isinstance(bolt, SolidBolt):
-                places.append(SolidPlace.of(bolt, sketch.mesh))
-            else:
-                places.append(bolt.placed(sketch.mesh))
-
-        if not found.tried("bolt", f"bolt[{k}].{'at' if bolt.at else 'faces'}", place):
+        made = found.tried("bolt", f"bolt[{k}].{'at' if bolt.at else 'faces'}", partial(_placed, bolt, sketch.mesh))
+        if made is None:
             continue
+        places.append(made)
         if isinstance(bolt, SolidBolt) and (apart := seat_apart(bolt, met)):
             found.add("fault", "bolt", apart, f"bolt[{k}].faces")
             continue
-        made = places[-1]
         length = show(made.length, "m")
         if isinstance(made, SolidPlace):
             text = f"bolt {bolt.name!r} is the part {bolt.part!r} and clamps {length}"
@@ -471,13 +450,8 @@ def _dowels(sketch: Sketch, found: _Findings) -> None:
     """Dowels in their places: holes of one diameter on one axis, one behind the other."""
     for k, dowel in enumerate(sketch.study.dowels, 1):
         key = f"dowel[{k}].walls"
-        places: list[DowelPlace] = []
-
-        def place(dowel: Dowel = dowel, places: list[DowelPlace] = places) -> None:
-            places.append(dowel.placed(sketch.mesh))
-
-        if found.tried("dowel", key, place):
-            made = places[0]
+        made = found.tried("dowel", key, partial(dowel.placed, sketch.mesh))
+        if made is not None:
             depths = ", ".join(
                 f"{show(float(high - low), 'm')} in {sketch.mesh.face_part[wall]!r}"
                 for wall, (low, high) in zip(made.walls, made.depths, strict=True)

@@ -132,8 +132,9 @@ def _edit(text: str, data: dict[str, Any], wanted: dict[str, Any], path: KeyPath
     if holder is not None and holder.path != path:  # an inline table, or a list of them
         return _replaced(text, holder, _at(wanted, holder.path))
     if value is None:
-        removed = [one for one in every if one.path[: len(path)] == path]
-        return _without(text, removed)
+        for one in reversed([one for one in every if one.path[: len(path)] == path]):
+            text = text[: one.start] + text[one.end :]
+        return text
     if holder is not None:
         return _replaced(text, holder, value)
     if isinstance(value, dict):
@@ -149,12 +150,6 @@ def _at(data: Any, path: KeyPath) -> Any:
 
 def _replaced(text: str, one: Statement, value: Any) -> str:
     return text[: one.value] + written(value) + text[one.value_end :]
-
-
-def _without(text: str, removed: list[Statement]) -> str:
-    for one in reversed(removed):
-        text = text[: one.start] + text[one.end :]
-    return text
 
 
 def _with_key(text: str, every: list[Statement], path: KeyPath, value: Any) -> str:

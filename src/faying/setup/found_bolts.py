@@ -282,7 +282,6 @@ def shoulder_remark(contacts: Sequence[TouchingFaces]) -> str:
     """What there is to say of shoulders."""
     between = "; ".join(quoted(pair) for pair in dict.fromkeys(contact.parts for contact in contacts))
     return (
-        f"{len(contacts)} pairs of faces that touch along the bolts of {between} (shoulders, registers) "
-        "are not joints, "
-        "since no bolt presses them: left out; add a [[joint]] if they do carry load"
+        f"{len(contacts)} pairs of faces that touch along the bolts of {between} (shoulders, registers) are not joints,"
+        " since no bolt presses them: left out; add a [[joint]] if they do carry load"
     )

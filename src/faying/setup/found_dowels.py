@@ -1,10 +1,12 @@
 """Dowels of a geometry: pins that are drawn as parts, and rows of holes of one diameter that take a pin."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from faying.bolt.threads import PINS, is_tapped, size_for_hole
 from faying.geometry.bores import Bore, Stack, bores, rows, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
+from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import Fasteners, Point
 from faying.units import show
 
@@ -12,29 +14,30 @@ ALIKE = 1e-3  # of a diameter: holes that differ by less have one
 
 
 @dataclass(frozen=True, kw_only=True)
-class FoundDowel:
-    """A dowel, before faces have names.
+class DowelProposal:
+    """A dowel: what tables call it, names of its walls, its ends [m] where no hole says them, where it is from."""
 
-    Args:
-        walls: of each part, the faces of the wall of its hole.
-        ends: points of the axis [m] where a pin that is drawn begins and ends; None where the holes say it.
-        remark: where it is from.
-    """
-
-    walls: tuple[tuple[FaceFacts, ...], ...]
+    name: str
+    walls: tuple[str, ...]
     ends: tuple[Point, Point] | None = None
     remark: str = ""
 
 
-def found_dowels(facts: GeometryFacts, fasteners: Fasteners) -> list[FoundDowel]:
+def found_dowels(facts: GeometryFacts, fasteners: Fasteners, names: FaceNames) -> tuple[DowelProposal, ...]:
     """The dowels of a geometry.
 
     Args:
         facts: of the parts that are not left out.
         fasteners: pins that are drawn, and parts that are bolts.
+        names: gives their walls names.
     """
     parts = {part.name for part in facts.parts}
-    found = []
+    found: list[DowelProposal] = []
+
+    def add(walls: Iterable[Sequence[FaceFacts]], remark: str, ends: tuple[Point, Point] | None = None) -> None:
+        named = tuple(names.of_several(wall, "dowel") for wall in walls)
+        found.append(DowelProposal(name=f"dowel {len(found) + 1}", walls=named, ends=ends, remark=remark))
+
     for pin in fasteners.dowels:
         walls: dict[str, list[FaceFacts]] = {}
         for hole in pin.holes:
@@ -45,13 +48,15 @@ def found_dowels(facts: GeometryFacts, fasteners: Fasteners) -> list[FoundDowel]
             remark += (
                 "; it is hollow and counts as solid, too stiff and too heavy: take it out or soften it" * pin.hollow
             )
-            found.append(FoundDowel(walls=tuple(map(tuple, walls.values())), ends=pin.ends, remark=remark))
+            add(walls.values(), remark, pin.ends)
     solid = {bolt.part for bolt in fasteners.meshed}
     for stack in rows([bore for bore in bores(facts) if bore.part not in solid], reach=0.01 * facts.size):
         taken = any((bore.part, number) in fasteners.shanks for bore in stack.bores for number in bore.faces)
         if not taken and takes_dowel(facts, stack):
-            found.append(_in_row(facts, stack))
-    return found
+            wide = show(2 * stack.bores[0].radius, "m")
+            walls_of = [[facts.face(bore.part, number) for number in bore.faces] for bore in stack.bores]
+            add(walls_of, f"{wide} (ISO 2338), as long as its holes; take it out if there is none")
+    return tuple(found)
 
 
 def takes_dowel(facts: GeometryFacts, stack: Stack) -> bool:
@@ -79,12 +84,3 @@ def size_of(stack: Stack) -> tuple[int, Bore | None] | None:
         if others[0] is not None and len(set(others)) == 1 and is_tapped(2 * end.radius, others[0]):
             return others[0], end
     return None
-
-
-def _in_row(facts: GeometryFacts, stack: Stack) -> FoundDowel:
-    """The dowel of a row of holes, as long as these."""
-    walls = [tuple(facts.face(bore.part, number) for number in bore.faces) for bore in stack.bores]
-    wide = show(2 * stack.bores[0].radius, "m")
-    return FoundDowel(
-        walls=tuple(walls), remark=f"{wide} (ISO 2338), as long as its holes; take it out if there is none"
-    )

@@ -12,11 +12,10 @@ from faying.decks.raw import Pretension
 from faying.fe.mesh import Mesh
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.mesh_facts import mesh_facts
-from faying.geometry.selectors import TOUCHING
+from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import to_nanometres
-from faying.setup.proposal import BoltProposal, JointProposal, Proposal, rounded, touching
+from faying.setup.proposal import BoltProposal, Proposal, named_joints, snapped, touching
 from faying.typing import Array
-from faying.units import show
 
 ALONG = 0.9  # cosine between the axis of a bolt and the normal of its seats
 ROUND = 0.03  # of a nominal diameter: how far the circle of the section's area may be from it
@@ -43,6 +42,7 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
         for contact in touching(facts)
         if not any(mesh.is_shared(facts.face(*side).name) for side in contact.sides)
     ]
+    snap, apart = snapped(facts, contacts)
     remarks = [note.text for note in mesh.notes]
     bolts: list[BoltProposal] = []
     for section, parts in read_pretensions(path, mesh):
@@ -51,16 +51,13 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
             remarks.append(found)
         else:
             bolts.append(found)
-    widest = max((abs(contact.gap) for contact in contacts), default=0.0)
-    snap = 0.0 if widest <= TOUCHING * facts.size else rounded(1.01 * widest, 2, up=True)
-    if snap:
-        remarks.append(f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)")
+    remarks += apart
     if not contacts and len(facts.parts) > 1:
         remarks.append("no two named faces touch: name the faces of the joints in the file, one on each side")
     return Proposal(
         facts=facts,
         faces={},
-        joints=tuple(_joint(facts, contact, k, len(contacts)) for k, contact in enumerate(contacts, 1)),
+        joints=named_joints(facts, contacts, FaceNames(facts, snap)),
         bolts=tuple(bolts),
         size=0.0,
         snap=snap,
@@ -80,16 +77,6 @@ def _halves(path: Path, mesh: Mesh) -> dict[str, str]:
             joined[f"bolt{len(joined) + 1}"] = " + ".join(parts)
     halves = {one for some in joined.values() for one in some.split(" + ")}
     return {part: part for part in mesh.parts if part not in halves} | joined if joined else {}
-
-
-def _joint(facts: GeometryFacts, contact: TouchingFaces, number: int, count: int) -> JointProposal:
-    one, two = (facts.face(*side) for side in contact.sides)
-    return JointProposal(
-        name="joint" if count == 1 else f"joint {number}",
-        faces=(one.name, two.name),
-        gap=contact.gap,
-        area=contact.area,
-    )
 
 
 def _bolt(

@@ -16,8 +16,9 @@ from faying.misuse import checked_call
 from faying.setup.bolt_names import grouped
 from faying.setup.edit import written as quoted
 from faying.setup.faces import faces
+from faying.setup.found_dowels import DowelProposal
 from faying.setup.mesh_proposal import propose_mesh
-from faying.setup.proposal import GRADE, SHARE, BoltProposal, DowelProposal, Proposal, propose
+from faying.setup.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
 from faying.setup.template import SCHEMA, surface
 from faying.style import Summary
 from faying.text import cut

@@ -16,7 +16,7 @@ from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import find_fasteners, quoted
 from faying.setup.found_bolts import FoundBolt, LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
-from faying.setup.found_dowels import FoundDowel, found_dowels
+from faying.setup.found_dowels import DowelProposal, found_dowels
 from faying.units import show
 
 GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that they are tightened to
@@ -67,16 +67,6 @@ class BoltProposal:
             return None
         force = SHARE * Fastener(thread=Thread.coarse(self.size * 1e-3), grade=GRADE).proof_load
         return rounded(force, 3)
-
-
-@dataclass(frozen=True, kw_only=True)
-class DowelProposal:
-    """A dowel: what tables call it, names of its walls, its ends [m] where no hole says them, where it is from."""
-
-    name: str
-    walls: tuple[str, ...]
-    ends: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
-    remark: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,16 +130,12 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     contacts = touching(facts)
     left = LeftOut()
     bolts = found_bolts(facts, fasteners, contacts, left)
-    dowels = found_dowels(facts, fasteners)
     apart = _apart(facts, contacts, bolts)
     aside = shoulders(facts, contacts, bolts)
     contacts = [contact for contact in contacts if contact not in aside and contact not in apart]
-    close = TOUCHING * facts.size
-    widest = max(abs(contact.gap) for contact in contacts)
-    snap = 0.0 if widest <= close else rounded(1.01 * widest, 2, up=True)
+    snap, remarks = snapped(facts, contacts)
     names = FaceNames(facts, snap)
-    joints = _named_joints(facts, contacts, names)
-    remarks = [f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)"] if snap else []
+    joints = named_joints(facts, contacts, names)
     remarks += fasteners.remarks
     if alone:
         remarks.append(f"{quoted(alone)}: no flat face touches another part; left out of the mesh (geometry.leave_out)")
@@ -163,12 +149,14 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         remarks.append("no bolt was found: fill in [[bolt]] by hand before you run the study")
     size, words = mesh_size(facts, {bolt.part for bolt in bolts})
     remarks.append(words)
+    named_bolts = tuple(_named(bolt, k, names) for k, bolt in enumerate(bolts, 1))
+    dowels = found_dowels(facts, fasteners, names)
     return Proposal(
         facts=facts,
         faces=names.selectors,
         joints=joints,
-        bolts=tuple(_named(bolt, k, names) for k, bolt in enumerate(bolts, 1)),
-        dowels=tuple(_named_dowel(dowel, k, names) for k, dowel in enumerate(dowels, 1)),
+        bolts=named_bolts,
+        dowels=dowels,
         size=size,
         snap=snap,
         left_out=(*fasteners.left_out, *alone),
@@ -176,9 +164,10 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     )
 
 
-def _named_joints(
+def named_joints(
     facts: GeometryFacts, contacts: Sequence[TouchingFaces], names: FaceNames
 ) -> tuple[JointProposal, ...]:
+    """The joints of planes that touch, with names of their faces."""
     joints = []
     for k, contact in enumerate(contacts, 1):
         word = "joint" if len(contacts) == 1 else f"joint {k}"
@@ -200,9 +189,13 @@ def _named(bolt: FoundBolt, number: int, names: FaceNames) -> BoltProposal:
     )
 
 
-def _named_dowel(dowel: FoundDowel, number: int, names: FaceNames) -> DowelProposal:
-    walls = tuple(names.of_several(wall, "dowel") for wall in dowel.walls)
-    return DowelProposal(name=f"dowel {number}", walls=walls, ends=dowel.ends, remark=dowel.remark)
+def snapped(facts: GeometryFacts, contacts: Sequence[TouchingFaces]) -> tuple[float, list[str]]:
+    """The gap [m] up to which faces count as touching, 0 where all touch; and what there is to say of it."""
+    widest = max((abs(contact.gap) for contact in contacts), default=0.0)
+    if widest <= TOUCHING * facts.size:
+        return 0.0, []
+    words = f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)"
+    return rounded(1.01 * widest, 2, up=True), [words]
 
 
 def rounded(value: float, digits: int, *, up: bool = False) -> float:

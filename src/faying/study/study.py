@@ -223,7 +223,6 @@ class Study(Summary):
         count = max(map(len, forces), default=1)
         known = Known(joints=joints, bolts=names, loads=count, materials=materials, parts=parts)
         uncertain = read_uncertain(top.inner("uncertain", lambda table: table.data), inside, known, faults)
-        top.close()
         faults.raise_if_any(where)
         return cls(
             title=title,

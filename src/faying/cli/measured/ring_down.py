@@ -55,7 +55,6 @@ def command(record: Path, **options: Any) -> None:
 
 def decay(record: Path, options: dict[str, Any]) -> Any:
     """The measured points of a record, or of the FRF of a hit."""
-
     from faying.measured.ring_down import read_record, ring_down, ring_down_of_frf
     from faying.measured.uff import read_uff
 

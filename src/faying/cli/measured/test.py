@@ -67,7 +67,10 @@ def command(
     click.echo(f"{len(frf.measured)} FRFs, {lines} lines: poles up to order {rule.highest_order}", err=True)
     found = identify_modes(frf, band=limits, rule=rule)
     if plot:
-        draw(found, plot)
+        from faying.measured import figure
+        from faying.style import save
+
+        save(figure.identified(found), plot)
     if out:
         write_uff(out, found.modes, frf)
     for line in frf.warnings:
@@ -84,7 +87,6 @@ def read_frf(
     points: Path | None,
 ) -> Any:
     """The FRFs of universal or text files, with the user's words where the files say nothing."""
-
     from faying.measured.mapping import read_points
     from faying.measured.text import read_frf_text
     from faying.measured.uff import read_uff
@@ -130,7 +132,6 @@ def table(found: Any) -> str:
 
 def document(found: Any) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON; SI."""
-
     modes = found.modes
     return {
         "source": modes.source,
@@ -148,11 +149,3 @@ def document(found: Any) -> dict[str, Any]:
         "warnings": list(found.frf.warnings),
         "units": "SI: Hz; loss factors and shapes without unit; intervals of 95 %",
     }
-
-
-def draw(found: Any, path: str) -> None:
-    """Write the stabilisation diagram over a fitted FRF."""
-    from faying.measured import figure as measured
-    from faying.style import save
-
-    save(measured.identified(found), path)

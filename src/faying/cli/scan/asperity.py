@@ -177,14 +177,12 @@ def case_of(options: dict[str, Any]) -> Any:
 
 def history_of(given: Any, name: str, unit: str) -> tuple[float, ...]:
     """Turning points of a history from texts with units; 0 needs none. A cell of a table separates them by ";"."""
-
     words = given.split(";") if isinstance(given, str) else given
     return tuple(0.0 if str(v).strip() == "0" else parse(v, unit, name=name) for v in words)
 
 
 def described(case: Any, result: Any) -> dict[str, Any]:
     """Inputs and outcome of one case, SI units."""
-
     out: dict[str, Any] = {
         "R": case.R,
         "h_a": case.h_a,
@@ -193,23 +191,14 @@ def described(case: Any, result: Any) -> dict[str, Any]:
     }
     if isinstance(result, FayingError):
         return out | {"error": str(result)}
-    return out | {
-        "force": result.force,
-        "area": result.area,
-        "area_bounds": list(result.area_bounds),
-        "pressure": result.pressure,
-        "residual": result.residual,
-        "unknowns": result.unknowns,
-        "history": {
-            name: getattr(result.history, name).tolist()
-            for name in ("displacement", "force", "area", "pressure", "area_bounds")
-        },
-    }
+    last = ("force", "area", "area_bounds", "pressure", "residual", "unknowns")
+    every = ("displacement", "force", "area", "pressure", "area_bounds")
+    history = {name: getattr(result.history, name).tolist() for name in every}
+    return out | {name: getattr(result, name) for name in last} | {"history": history}
 
 
 def table(document: list[dict[str, Any]]) -> str:
     """Format the outcome for the terminal: the greatest load and, where there is one, the residual displacement."""
-
     columns = {"R": 10, "h_a": 10, "displacement": 14, "force": 12, "area": 14, "bounds": 26, "pressure": 12}
     lines = ["".join(f"{name:>{width}}" for name, width in (columns | {"residual": 12}).items())]
     for entry in document:

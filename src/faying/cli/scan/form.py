@@ -44,7 +44,6 @@ def command(
 
 def text(name: str, fit: Any) -> str:
     """The numbers, and the table of a study that stands for them."""
-
     sides = " x ".join(show(side, "m") for side in fit.lengths)
     lines = [
         f"{name}: {len(fit.values):,} {'gaps' if fit.is_gap else 'heights'} over {sides}, longer along {fit.along}",

@@ -189,7 +189,6 @@ def conducted(law: ContactLaw, response: Response, pair: ContactPair) -> Array:
 
 def heading(choice: Choice, mates: Mates | None) -> list[str]:
     """Both faces, what the scan says of D and G, and why the law was taken."""
-
     from faying.output import table
 
     lines = []
@@ -251,7 +250,6 @@ def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> RoughPair:
 
 def pair_of(options: dict[str, Any], *, needed: bool) -> ContactPair:
     """Build the pair from --material, --E ... and --against; needed: whether a law takes it."""
-
     from faying.materials import ContactPair, Material, material_of
 
     stresses = ("E", "hardness", "yield_strength")
@@ -362,7 +360,6 @@ def document(law: ContactLaw, response: Response) -> dict[str, Any]:
 
 def table(law: ContactLaw, response: Response, h: Array | None = None) -> str:
     """Format the response for the terminal; * marks rows outside the validity range, with the reasons below."""
-
     quantities = response.quantities() | ({} if h is None else {"h": h})
     names = [name for name in SHOWN if name in quantities]
     given = []

@@ -190,7 +190,6 @@ def _row(name: str, values: Array, form: str = ".4g", marks: Sequence[str] = ())
 
 def reasons(response: Response) -> Iterator[str]:
     """Return why a response leaves its validity range, with the pressures from and to; coverage shows as -."""
-
     for reason, mask in response.reasons.items():
         if mask.any() and not reason.startswith("pressure "):
             p = response.pressure[mask]

@@ -45,7 +45,6 @@ def mark(parameter: dict[str, Any]) -> str:
 
 def describe(cls: Any) -> dict[str, Any]:
     """Return what a law declares."""
-
     from faying.contact.inputs import OF_SCAN
 
     defaults = {f.name: f.default for f in fields(cls)}

@@ -91,7 +91,6 @@ def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
 
 def _fit(fit: Any) -> dict[str, Any]:
     """A fit as a tree, without the heights that it was made from."""
-
     return {name: value for name, value in asdict(replace(fit, drawn=None)).items() if name != "drawn"}
 
 

@@ -59,27 +59,12 @@ def data(text: str, name: str) -> str:
     return f'<script type="application/json" id="{name}">{inert}</script>'
 
 
-START = """
-const place = document.getElementById("stage");
-try {
-  window.view = await mount(place, JSON.parse(document.getElementById("scene").textContent));
-} catch (fault) {
-  place.textContent = `This browser cannot show the view (${fault.message}).`;
-}
-"""
-
-STYLE = """
-html,body{height:100%;margin:0}
-body{display:flex;flex-direction:column;font:15px/1.45 system-ui,sans-serif;background:#fff;color:#1c2733}
-h1{font-size:1.05rem;font-weight:600;margin:.6rem .9rem;overflow-wrap:anywhere}
-#stage{flex:1;min-height:24rem}
-@media (prefers-color-scheme:dark){body{background:#14181d;color:#e3e8ee}}
-"""
+START, STYLE = ((HERE / name).read_text(encoding="utf-8") for name in ("start.js", "page.css"))
 
 
 def page(scene: Scene) -> str:
     """Return one self-contained page that shows a scene."""
-    title, run = escape(scene.title), inline() + START
+    title, run = escape(scene.title), f"{inline()}\n{START}"
     head = (
         f'<meta charset="utf-8">{policy(run)}<meta name="viewport" content="width=device-width"><title>{title}</title>'
         f'<meta name="color-scheme" content="light dark"><style>{STYLE}</style>'

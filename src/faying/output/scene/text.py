@@ -84,24 +84,11 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         "size": scene.size,
         "loads": scene.loads.tolist(),
         "parts": [{"name": name} for name in scene.parts],
-        "faces": [
-            {
-                "part": face.part,
-                "number": face.number,
-                "name": face.name,
-                "area": face.area,
-                "centre": face.centre.tolist(),
-                "normal": face.normal.tolist(),
-            }
-            for face in scene.faces
-        ],
+        "faces": [vars(f) | {"centre": f.centre.tolist(), "normal": f.normal.tolist()} for f in scene.faces],
         "joints": joints,
-        "bolts": [
-            {"name": b.name, "seats": b.seats.tolist(), "diameter": b.diameter, "head": b.head, "meshed": b.meshed}
-            for b in scene.bolts
-        ],
-        "supports": [{"face": s.face, "directions": list(s.directions), "elastic": s.elastic} for s in scene.supports],
-        "masses": [{"mass": m.mass, "point": m.point.tolist()} for m in scene.masses],
+        "bolts": [vars(bolt) | {"seats": bolt.seats.tolist()} for bolt in scene.bolts],
+        "supports": [vars(support) for support in scene.supports],
+        "masses": [vars(mass) | {"point": mass.point.tolist()} for mass in scene.masses],
         "fields": _fields(scene),
         "modes": _modes(scene.modes, arrays),
         "arrays": arrays,
@@ -124,12 +111,7 @@ def _fields(scene: Scene) -> dict[str, Any]:
         values = [j.map.fields[name] for j in scene.joints if j.map is not None and name in j.map.fields]
         if values:
             low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
-            out[name] = {
-                "label": known.label,
-                "unit": known.unit,
-                "factor": known.factor,
-                "range": [min(low, 0.0), high],
-            }
+            out[name] = vars(known) | {"range": [min(low, 0.0), high]}
     return out
 
 

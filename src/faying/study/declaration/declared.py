@@ -169,14 +169,21 @@ class Key:
     @classmethod
     def point(cls, says: str, default: Any = None) -> "Key":
         """Three lengths."""
-        kind = 'three lengths, for example ["0 mm", "10 mm", "0 mm"]'
-        return cls(kind, listed(QUANTITY, 3, 3), says, default, read=values.point, unit="m")
+        return cls.quantities(values.POINT, "m", 3, says, default)
+
+    @classmethod
+    def quantities(cls, form: str, unit: str, count: int, says: str, default: Any = None) -> "Key":
+        """So many quantities in a list."""
+
+        def read(value: Any, name: str) -> tuple[float, ...]:
+            return values.quantities(value, name, form, unit, count)
+
+        return cls(form, listed(QUANTITY, count, count), says, default, read=read, unit=unit)
 
     @classmethod
     def direction(cls, says: str, default: Any = None) -> "Key":
         """Three numbers that are not all 0."""
-        kind = "three numbers, for example [1, 0, 0]"
-        return cls(kind, listed({"type": "number"}, 3, 3), says, default, read=values.direction)
+        return cls(values.DIRECTION, listed({"type": "number"}, 3, 3), says, default, read=values.direction)
 
     @classmethod
     def length_unit(cls, says: str) -> "Key":

@@ -33,30 +33,34 @@ Made = TypeVar("Made")
 class Faults:
     """The faults found so far, the files that the study names, which lie relative to `folder`, and selectors by name.
 
-    selectors: those that stand in place of a face's name, under the name that the face gets.
+    selectors: those that stand in place of a face's name, under the name that the face gets; tables: all that are read.
     """
 
     lines: list[str] = field(default_factory=list)
     folder: Path = field(default_factory=Path)
     files: list[Path] = field(default_factory=list)
     selectors: dict[str, Selector] = field(default_factory=dict)
+    tables: "list[Table]" = field(default_factory=list)
 
     def add(self, text: str) -> None:
         """Note one fault."""
         self.lines.append(text)
 
     def raise_if_any(self, where: str) -> None:
-        """Raise one StudyFaults that lists all of them."""
+        """Raise one StudyFaults that lists all of them, with the keys that nobody took."""
+        for table in self.tables:
+            table.note_strays()
         if self.lines:
             raise StudyFaults(where, self.lines)
 
 
 class Table:
-    """One table of the file, read by the declarations of its keys; `close` reports the keys that nobody took."""
+    """One table of the file, read by the declarations of its keys."""
 
     def __init__(self, data: Mapping[str, Any], where: str, faults: Faults, keys: Declared) -> None:
         self.data, self.where, self.faults, self.keys = dict(data), where, faults, keys
         self._known: list[str] = []
+        faults.tables.append(self)
 
     def _name(self, key: str) -> str:
         return f"{self.where}.{key}" if self.where else key
@@ -168,9 +172,9 @@ class Table:
             self.faults.add(f"{self.where}: {fault}")
             return None
 
-    def close(self) -> None:
-        """Note every key that was not asked for, with the nearest known one."""
-        for key in self.data:
+    def note_strays(self) -> None:
+        """Note every key that was not asked for, with the nearest known one; a table that declares none takes all."""
+        for key in self.data if self.keys else ():
             if key not in self._known:
                 near = get_close_matches(key, self._known, n=1)
                 hint = f"; did you mean {near[0]}?" if near else f"; the known ones are {', '.join(self._known)}"

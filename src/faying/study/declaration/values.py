@@ -1,13 +1,16 @@
 """How one value of a study is read: its form, its unit, its range."""
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from faying import units
 from faying.checks import plain
 from faying.errors import InputError
 
+POINT, DIRECTION = 'three lengths, for example ["0 mm", "10 mm", "0 mm"]', "three numbers, for example [1, 0, 0]"
 MAX_COUNT = 1_000_000  # of what is counted, where a key says no less
 MOST_LOSS = 2.0  # loss factor [-]: no structure loses more in a radian than it stores
+Made = TypeVar("Made")
 # least and greatest size that a number of a unit has in any bolted structure: beyond them a unit or a power is wrong
 RANGES = {
     "m": (1e-12, 1e4),
@@ -38,19 +41,27 @@ def quantity(
     return number
 
 
+def several(value: Any, name: str, form: str, read: Callable[[Any, str], Made], count: int) -> tuple[Made, ...]:
+    """Convert so many values in a list, each by `read`; InputError that shows the form."""
+    if not isinstance(value, list) or len(value) != count:
+        raise InputError(f"{name} = {value!r} should be {form}")
+    return tuple(read(one, name) for one in value)
+
+
+def quantities(value: Any, name: str, form: str, unit: str, count: int) -> tuple[float, ...]:
+    """Convert so many quantities of one unit in a list, of any sign; InputError that shows the form."""
+    return several(value, name, form, lambda one, where: quantity(one, unit, where, positive=False), count)
+
+
 def point(value: Any, name: str) -> tuple[float, float, float]:
     """Convert three lengths with units; InputError that shows the form."""
-    if not isinstance(value, list) or len(value) != 3:
-        raise InputError(f'{name} = {value!r} should be three lengths, for example ["0 mm", "10 mm", "0 mm"]')
-    x, y, z = (quantity(v, "m", name, positive=False) for v in value)
+    x, y, z = quantities(value, name, POINT, "m", 3)
     return x, y, z
 
 
 def direction(value: Any, name: str) -> tuple[float, float, float]:
     """Convert three numbers that are not all zero; InputError that shows the form."""
-    if not isinstance(value, list) or len(value) != 3:
-        raise InputError(f"{name} = {value!r} should be three numbers, for example [1, 0, 0]")
-    x, y, z = (number(v, name) for v in value)
+    x, y, z = several(value, name, DIRECTION, number, 3)
     size = max(abs(x), abs(y), abs(z))
     if size == 0:
         raise InputError(f"{name} = {value!r} has no length")

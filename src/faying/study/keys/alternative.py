@@ -32,13 +32,9 @@ class AlternativeChoice:
     @classmethod
     def of(cls, table: Table, index: int) -> "AlternativeChoice":
         """Read one [[alternative]]."""
-        law, surface = table.table("law"), table.table("surface")
+        law, surface = table.inner("law", LawChoice.of), table.inner("surface", SurfaceChoice.of)
         form = table.inner("form", read_form)
         if law is None and surface is None and form is None:
             table.faults.add(f"{table.where}: give a law, a surface or a form that differs from the study's")
-        read = None if law is None else LawChoice.of(law)
-        name = table.get("name", read.model if read is not None else f"alternative {index + 1}")
-        other = None if surface is None else SurfaceChoice.of(surface)
-        choice = cls(name=name or "", law=read, surface=other, form=form)
-        table.close()
-        return choice
+        name = table.get("name", law.model if law is not None else f"alternative {index + 1}")
+        return cls(name=name or "", law=law, surface=surface, form=form)

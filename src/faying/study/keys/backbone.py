@@ -73,7 +73,6 @@ class BackboneChoice:
         given = {key: table.get(key) for key in BACKBONE if key != "law"} | {"laws": table.get("law")}
         if given["measured"] is not None:
             table.made(lambda: MeasuredBackbone.read(given["measured"]))  # a fault shows at once
-        table.close()
         return table.made(lambda: cls(**given))
 
 
@@ -126,7 +125,7 @@ BACKBONE: Declared = {
     "friction": Key(
         "a number or a list of them",
         one_or_more(NUMBER),
-        ("Coefficient for all joints, or a list with a curve for each; those of the joints where left out."),
+        "Coefficient for all joints, or a list with a curve for each; those of the joints where left out.",
         (),
         read=frictions,
     ),
@@ -144,7 +143,7 @@ BACKBONE: Declared = {
     "law": Key(
         'the name of a law, or a list of them, such as ["auto", "jk"]',
         one_or_more(WORDS),
-        ("Contact law of all joints, or a list with a curve for each; that of the study where left out."),
+        "Contact law of all joints, or a list with a curve for each; that of the study where left out.",
         (),
         read=laws,
     ),

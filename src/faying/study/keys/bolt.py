@@ -15,7 +15,7 @@ from faying.bolt.threads import PROOF, Fastener, Thread
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import CATALOGUE, Material
-from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed, one_or_more
+from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, one_or_more
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity
 from faying.study.keys.face import face_names, two_faces
@@ -73,7 +73,6 @@ def read_bolt(
                     **given,
                 )
             )
-    table.close()
     return bolt, forces
 
 
@@ -126,17 +125,9 @@ def _note_solid(table: Table, part: str) -> None:
 def _washer(table: Table, bolt: str, materials: Mapping[str, Material]) -> Washer | None:
     outer, inner, thickness = (table.get(key) for key in ("outer", "inner", "thickness"))
     material = named_material(table, materials, f"bolt {bolt!r}")
-    table.close()
     if None in (outer, inner, thickness) or material is None:
         return None
     return Washer(outer=outer, inner=inner, thickness=thickness, material=material)
-
-
-def _ring(value: Any, name: str) -> tuple[float, float]:
-    if not isinstance(value, list) or len(value) != 2:
-        raise InputError(f'{name} = {value!r} should be inner and outer diameter, for example ["8.4 mm", "16 mm"]')
-    inner, outer = (quantity(v, "m", name, positive=False) for v in value)
-    return inner, outer
 
 
 def _forces(
@@ -198,10 +189,8 @@ BOLT: Declared = {
     "diameter": Key.quantity("m", "Diameter of the shank; with material, the bolt has stiffness and mass."),
     "pitch": Key.quantity(
         "m",
-        (
-            "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(P/2pi + "
-            "0.577 d2 mu + 0.65 d mu) of ISO 16047."
-        ),
+        "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(P/2pi + 0.577 d2 mu + 0.65 d "
+        "mu) of ISO 16047.",
     ),
     "thread_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction in the thread."),
     "head_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction under the head."),
@@ -227,12 +216,11 @@ BOLT: Declared = {
             "material": Key.text("Material.", REQUIRED, examples=lambda: CATALOGUE),
         },
     ),
-    "seat": Key(
+    "seat": Key.quantities(
         'inner and outer diameter, for example ["8.4 mm", "16 mm"]',
-        listed(QUANTITY, 2, 2),
-        ("Inner and outer diameter of the ring that is pressed; the full face where left out and no at is given."),
-        read=_ring,
-        unit="m",
+        "m",
+        2,
+        "Inner and outer diameter of the ring that is pressed; the full face where left out and no at is given.",
     ),
     "head_mass": Key.quantity("kg", "Mass of the head; of a hexagon head of the diameter where left out."),
     "nut_mass": Key.quantity(
@@ -240,17 +228,13 @@ BOLT: Declared = {
     ),
     "engaged": Key.quantity(
         "m",
-        (
-            "Length of the thread in a tapped hole, whose wall is the second face; 1.5 diameters, or "
-            "the depth of the hole, where left out."
-        ),
+        "Length of the thread in a tapped hole, whose wall is the second face; 1.5 diameters, or the depth of the "
+        "hole, where left out.",
     ),
     "shank": Key.quantity(
         "m",
-        (
-            "Length of the plain shank under the head. Where left out: 0, a thread up to the head; "
-            "all of the free length for a diameter that is not that of the thread."
-        ),
+        "Length of the plain shank under the head. Where left out: 0, a thread up to the head; all of the free length "
+        "for a diameter that is not that of the thread.",
         positive=False,
     ),
     "head": Key.text("The head of the screw.", "hexagon", ("hexagon", "socket")),

@@ -78,7 +78,6 @@ class BoltSheetChoice:
         )
         if way is not None and choice.tightening_factor is not None:
             table.faults.add(f"{table.where} has both tightening and tightening_factor; give one of them")
-        table.close()
         return choice
 
 
@@ -152,22 +151,17 @@ BOLT_SHEET: Declared = {
     "load": Key(
         "the name of a [[load]], or a list of them",
         one_or_more(WORDS),
-        (
-            "A [[load]], or several, that give working load, load across, load factor and loss by "
-            "temperature as they are found; in place of axial, transverse, introduction and "
-            "thermal_loss. One stands for nothing and itself, several for the least and the greatest "
-            "of them."
-        ),
+        "A [[load]], or several, that give working load, load across, load factor and loss by temperature as they are "
+        "found; in place of axial, transverse, introduction and thermal_loss. One stands for nothing and itself, "
+        "several for the least and the greatest of them.",
         (),
         read=_names,
     ),
     "axial": Key(
         "quantity [N], or the least and the greatest",
         {"anyOf": [QUANTITY, listed(QUANTITY, 2, 2)]},
-        (
-            "Least and greatest working load along the bolt, positive where it pulls the parts "
-            "apart; one load stands for 0 and that."
-        ),
+        "Least and greatest working load along the bolt, positive where it pulls the parts apart; one load stands for "
+        "0 and that.",
         read=_axial,
         unit="N",
     ),
@@ -176,10 +170,8 @@ BOLT_SHEET: Declared = {
     "clamp": _force("Clamp load that is asked for, of a seal for example."),
     "embedding": Key.quantity(
         "m",
-        (
-            "Embedding of thread, seats and joints together; the guide value of VDI 2230 where left "
-            "out and scans give a roughness."
-        ),
+        "Embedding of thread, seats and joints together; the guide value of VDI 2230 where left out and scans give a "
+        "roughness.",
     ),
     "thermal_loss": Key.quantity("N", "Preload that temperature takes; negative where it adds some.", positive=False),
     "shear_strength": Key.quantity("Pa", "Shear strength of the part that is tapped."),

@@ -30,7 +30,6 @@ def _dowel(table: Table, index: int, materials: Mapping[str, Material]) -> Dowel
     walls = several_names(table, name)
     diameter, ends = table.get("diameter"), table.get("ends")
     material = named_material(table, materials, f"dowel {name!r}")
-    table.close()
     if material is None or not walls:
         return None
     return table.made(lambda: Dowel(name, walls, material=material, diameter=diameter, ends=ends))

@@ -25,7 +25,6 @@ def read_selector(table: Table) -> Selector | None:
         table.data.pop("point")
     given: dict[str, Any] = {key: table.get(key) for key in SELECTOR if key != "part"}
     rules = [key for key in ("normal", "touching", "nearest", "number") if key in table.data]
-    table.close()
     if not rules and part is not None:
         table.faults.add(
             f'{table.where} gives a part but no face of it; add normal = "+z", touching = "another part", '
@@ -116,7 +115,7 @@ SELECTOR: Declared = {
     "normal": Key(
         'an axis such as "+z", or three numbers such as [0, 0, 1]',
         {"anyOf": [{"enum": list(AXES)}, listed({"type": "number"}, 3, 3)]},
-        ('Outward normal of a plane, within 1 degree: "+x", "-x", "+y", "-y", "+z", "-z" or three numbers.'),
+        'Outward normal of a plane, within 1 degree: "+x", "-x", "+y", "-y", "+z", "-z" or three numbers.',
         read=_normal,
     ),
     "touching": Key.text("The part that the face touches, or comes as near to as geometry.snap says."),
@@ -125,10 +124,8 @@ SELECTOR: Declared = {
     "number": Key(
         "a whole number from 1 to 1,000,000, or a list of them",
         {"anyOf": [INTEGER, listed(INTEGER, 1)]},
-        (
-            "Number of the face among those of its part, as `faying faces` lists them; or those of "
-            "several faces that are meant together, such as [3, 5]."
-        ),
+        "Number of the face among those of its part, as `faying faces` lists them; or those of several faces that are "
+        "meant together, such as [3, 5].",
         read=_numbers,
     ),
     "all": Key.truth("Several faces that fit count as one."),

@@ -16,14 +16,12 @@ def read_form(table: Table) -> Form | None:
         table.faults.add(f"{table.where}: flat = true says that the faces have no form; leave out {', '.join(others)}")
     given = {name: table.get(name) for name in PARAMETERS}
     along = table.get("along")
-    gap, first, second = table.table("gap"), table.table("first"), table.table("second")
     maps: dict[str, Any] = {
-        "gap": None if gap is None else _gap(gap),
-        "first": None if first is None else _face(first),
-        "second": None if second is None else _face(second),
+        "gap": table.inner("gap", _gap),
+        "first": table.inner("first", _face),
+        "second": table.inner("second", _face),
         "waviness": table.inner("waviness", read_waviness),
     }
-    table.close()
     values = {name: value for name, value in given.items() if value is not None}
     return table.made(lambda: Form(**values, along=along, **maps))
 
@@ -31,7 +29,6 @@ def read_form(table: Table) -> Form | None:
 def _gap(table: Table) -> GapMap | None:
     """Read the map of a gap: CSV or text of x, y, gap, with the units of the columns and the place of their axes."""
     given = {key: table.get(key) for key in GAP}
-    table.close()
     path = given.pop("file")
     return None if path is None else table.made(lambda: read_gap_map(path, **given))
 
@@ -39,7 +36,6 @@ def _gap(table: Table) -> GapMap | None:
 def _face(table: Table) -> FaceMap | None:
     """Read the heights of one face: a list of points or a scan, and where it lies."""
     given = {key: table.get(key) for key in HEIGHTS}
-    table.close()
     if given["file"] is None:
         return None
 
@@ -78,8 +74,8 @@ FORM: Declared = {
     "second": Inner(says="Measured heights of the second face.", keys=HEIGHTS),
     "waviness": Inner(
         says=(
-            "Random waves between the scan and the form of the face. The size is said in one way: "
-            "Wq, Wa, flatness, process or from."
+            "Random waves between the scan and the form of the face. The size is said in one way: Wq, Wa, flatness, "
+            "process or from."
         ),
         keys=WAVINESS,
     ),

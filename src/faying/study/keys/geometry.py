@@ -53,7 +53,6 @@ def read_geometry(top: Table) -> GeometryChoice:
     faces = _faces(table)
     snap = table.get("snap")
     left = table.get("leave_out")
-    table.close()
     return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap, leave_out=left)
 
 
@@ -96,7 +95,6 @@ def _meshed(table: Table) -> GeometryChoice:
     sets = _by_name(table, "sets")
     faces = _faces(table)
     snap = table.get("snap")
-    table.close()
     return GeometryChoice(mesh=mesh, unit=unit, sets=sets, face=faces, snap=snap)
 
 
@@ -143,14 +141,12 @@ GEOMETRY: Declared = {
     ),
     "face": Inner(
         says=(
-            "Names for faces that have none in the file. A selector may also stand where a joint, a "
-            "bolt, a support or a mass names a face."
+            "Names for faces that have none in the file. A selector may also stand where a joint, a bolt, a support or "
+            "a mass names a face."
         ),
         keys={
             NAME: Inner(
-                says=(
-                    "The face for which all that is given holds gets NAME; it is an error where none or several fit."
-                ),
+                says="The face for which all that is given holds gets NAME; it is an error where none or several fit.",
                 keys=SELECTOR,
             )
         },
@@ -159,10 +155,7 @@ GEOMETRY: Declared = {
     "leave_out": Key(
         'a list of parts, for example ["dowel 1", "dowel 2"]',
         listed(WORDS, 0),
-        (
-            "Parts of the STEP file that are not meshed, such as dowels, or the bolts and nuts that "
-            "a [[bolt]] stands for."
-        ),
+        "Parts of the STEP file that are not meshed, such as dowels, or the bolts and nuts that a [[bolt]] stands for.",
         (),
         read=_parts,
     ),

@@ -73,7 +73,6 @@ class JointChoice:
         if "gap" in table.data:
             table.faults.add(f"{table.where}.gap has become {table.where}.form.gap; rename the table")
             table.data.pop("gap")
-        surface, law = table.table("surface"), table.table("law")
         name = table.get("name", f"joint {index + 1}")
         bonded = table.get("bonded")
         more = [key for key in table.data if key not in ("name", "faces", "bonded")]
@@ -82,18 +81,16 @@ class JointChoice:
                 f"{table.where}.{more[0]}: joint {name!r} is bonded, so that it has no pressure, slip or law; leave "
                 f"{', '.join(more)} out, or bonded"
             )
-        choice = cls(
+        return cls(
             name=name,
             faces=face_names(table, name),
             **{key: table.get(key) for key in ("springs", "tangential", "friction", "search_distance")},
-            surface=None if surface is None else SurfaceChoice.of(surface),
-            law=None if law is None else LawChoice.of(law),
+            surface=table.inner("surface", SurfaceChoice.of),
+            law=table.inner("law", LawChoice.of),
             form=table.inner("form", read_form),
             bonded=bonded,
             number=index + 1,
         )
-        table.close()
-        return choice
 
 
 def read_joints(top: Table) -> tuple[tuple[JointChoice, ...], tuple[JointChoice, ...]]:
@@ -116,29 +113,23 @@ JOINT: Declared = {
     ),
     "faces": two_faces("The two faces; the first is the rough one."),
     "springs": Key.text(
-        (
-            "Springs per area on both faces, or one at each pair of nodes, as in the JK paper; the "
-            "latter depends on the mesh."
-        ),
+        "Springs per area on both faces, or one at each pair of nodes, as in the JK paper; the latter depends on the "
+        "mesh.",
         "per-area",
         ("per-area", "per-node"),
     ),
     "friction": Key.within(
         0,
         MOST_FRICTION,
-        (
-            "Coefficient at which the joint slips while the bolts are tightened, and in a backbone; "
-            "sticks everywhere where left out."
-        ),
+        "Coefficient at which the joint slips while the bolts are tightened, and in a backbone; sticks everywhere "
+        "where left out.",
     ).varying(short="friction"),
     "tangential": Key(
         '"law", "mindlin", or k_t/k_n, above 0 and at most 2',
         {"anyOf": [NUMBER, {"enum": ["law", "mindlin"]}]},
-        (
-            'Tangential stiffness: "law" takes that of the law, "mindlin" takes k_t/k_n = 2(1 - '
-            "nu)/(2 - nu), and a number is k_t/k_n itself; measured ratios reach from 0.1 to 0.7. "
-            "That of the law where it has one, else Mindlin's, if left out."
-        ),
+        'Tangential stiffness: "law" takes that of the law, "mindlin" takes k_t/k_n = 2(1 - nu)/(2 - nu), and a '
+        "number is k_t/k_n itself; measured ratios reach from 0.1 to 0.7. That of the law where it has one, else "
+        "Mindlin's, if left out.",
         read=_tangential,
         parameter=TANGENTIAL,
     ).varying(),
@@ -149,11 +140,7 @@ JOINT: Declared = {
 
 def _in_form(name: str) -> Put:
     """Puts a number in the form of a joint."""
-
-    def put(joint: JointChoice, value: float) -> JointChoice:
-        return replace(joint, form=(joint.form or Form()).with_value(name, value))
-
-    return put
+    return lambda joint, value: replace(joint, form=(joint.form or Form()).with_value(name, value))
 
 
 # where the numbers of a form stand under [joint], and what [uncertain] calls them, where it is not their own name

@@ -37,6 +37,7 @@ class LawChoice:
         kind = table.get("model")
         counterbody = table.get("counterbody")
         if kind is None and "model" in table.data:
+            table.data.clear()  # nothing is said of keys of a law that is not known
             return cls.unknown()
         kind = kind or find(cls.model)
         given = {}
@@ -54,7 +55,6 @@ class LawChoice:
         for key in table.data:
             if not table.known(key):
                 misspelt_keys |= set(get_close_matches(key, kind.law.entries(), n=1))
-        table.close()
         # keys of another law: it may be meant, which needs no surface
         choice = cls(
             model=kind.label,
@@ -127,11 +127,7 @@ def _note_misplaced(table: Table, kind: LawKind) -> bool:
 
 def in_law(name: str) -> Put:
     """Puts a value in an entry of a law."""
-
-    def put(law: LawChoice, value: object) -> LawChoice:
-        return replace(law, given={**law.given, name: value})
-
-    return put
+    return lambda law, value: replace(law, given={**law.given, name: value})
 
 
 def _of_laws() -> dict[str, dict[str, Key]]:
@@ -150,7 +146,7 @@ LAW = Inner(
         "model": Key(
             "text",
             WORDS,
-            ('Label of the law; "auto" where left out, which solves the contact on the scan or takes the nearest law.'),
+            'Label of the law; "auto" where left out, which solves the contact on the scan or takes the nearest law.',
             read=lambda value, name: find(text(value, name)),
             examples=lambda: sorted(label.lower() for label in kinds()),
         ),

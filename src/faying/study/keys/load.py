@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from faying.errors import InputError
-from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key, listed
+from faying.study.declaration.declared import QUANTITY, REQUIRED, Declared, Inner, Key
 from faying.study.declaration.reader import Made, Table
 from faying.study.declaration.values import number, quantity
 from faying.study.keys.face import face_name, one_face
@@ -18,15 +18,17 @@ from faying.study.load import (
     Force,
     Load,
     Pressure,
-    Vector,
     in_order,
 )
 
-LENGTH = '["0 mm", "0 mm", "0.1 mm"]'
-EXAMPLES = {"N": '["0 N", "0 N", "5 kN"]', "N*m": '["0 N*m", "20 N*m", "0 N*m"]', "m": LENGTH}
+EXAMPLES = {
+    "N": '["0 N", "0 N", "5 kN"]',
+    "N*m": '["0 N*m", "20 N*m", "0 N*m"]',
+    "m": '["0 mm", "0 mm", "0.1 mm"]',
+    "m/s^2": '["0 m/s^2", "0 m/s^2", "98.1 m/s^2"]',
+}
 CHANGES = 'changes by part or bolt, for example {plate = "60 K"}'
 FACTORS = 'factors by load, for example {"10 g" = 1.5}'
-EXAMPLES["m/s^2"] = '["0 m/s^2", "0 m/s^2", "98.1 m/s^2"]'
 
 
 def read_loads(tables: Sequence[Table]) -> tuple[Load, ...]:
@@ -47,7 +49,6 @@ def _read(table: Table) -> Load | None:
     moves = _on_faces(table, "displacement", Displacement)
     acceleration = table.get("acceleration") or NOTHING
     more = {key: table.get(key) for key in ("temperature", "combine", "after", "increments")}
-    table.close()
     if name is None or None in forces or None in pressures or None in moves:
         return None
     return table.made(
@@ -67,7 +68,6 @@ def _force(table: Table, label: str) -> Force | None:
     force = table.get("force") or NOTHING
     moment = table.get("moment") or NOTHING
     place = table.get("point")
-    table.close()
     return table.made(lambda: Force(face, force=force, moment=moment, point=place))
 
 
@@ -76,19 +76,8 @@ def _on_faces(table: Table, key: str, make: Callable[[str, Any], Made]) -> list[
     out: list[Made | None] = []
     for k, one in enumerate(table.tables(key), 1):
         face, value = face_name(one, f"{table.where} {key} {k}"), one.get(key)
-        one.close()
         out.append(None if face is None or value is None else make(face, value))
     return out
-
-
-def _vector(unit: str) -> Callable[[Any, str], Vector]:
-    def convert(value: Any, name: str) -> Vector:
-        if not isinstance(value, list) or len(value) != 3:
-            raise InputError(f"{name} = {value!r} should be three components, for example {EXAMPLES[unit]}")
-        x, y, z = (quantity(one, unit, name, positive=False) for one in value)
-        return x, y, z
-
-    return convert
 
 
 def _by_name(form: str, read: Callable[[Any, str], float]) -> Callable[[Any, str], dict[str, float]]:
@@ -102,8 +91,7 @@ def _by_name(form: str, read: Callable[[Any, str], float]) -> Callable[[Any, str
 
 def _three(unit: str, says: str, default: Any = None) -> Key:
     """Three components with units."""
-    kind = f"three components, for example {EXAMPLES[unit]}"
-    return Key(kind, listed(QUANTITY, 3, 3), says, default, read=_vector(unit), unit=unit)
+    return Key.quantities(f"three components, for example {EXAMPLES[unit]}", unit, 3, says, default)
 
 
 LOAD: Declared = {
@@ -143,10 +131,8 @@ LOAD: Declared = {
     ),
     "acceleration": _three(
         "m/s^2",
-        (
-            "Acceleration of the whole structure along x, y and z; the inertia of parts, bolts and "
-            "masses pulls the other way."
-        ),
+        "Acceleration of the whole structure along x, y and z; the inertia of parts, bolts and masses pulls the other "
+        "way.",
     ),
     "temperature": Key(
         CHANGES,

@@ -21,7 +21,6 @@ def read_materials(top: Table) -> dict[str, Material]:
     materials = dict(CATALOGUE)
     for name, table in top.named("material").items():
         fields = {key: table.get(key) for key in MATERIAL}
-        table.close()
         if None not in (fields["E"], fields["nu"], fields["density"]):
             try:
                 materials[name] = Material(name=name, **fields)
@@ -74,7 +73,6 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> tuple[dict[str,
             )
         if material is not None:  # else a fault is noted, and nothing may stand in its place
             parts[name] = material
-        table.close()
     return parts, tests
 
 
@@ -91,18 +89,14 @@ MATERIAL: Declared = {
     "yield_strength": Key.quantity("Pa", "Yield strength; gives the hardness where that is left out."),
     "hardness": Key.quantity(
         "Pa",
-        (
-            "Hardness of the analytic laws of asperities; 2.8 times the yield strength where left "
-            "out. Without brinell it is the hardness of every law, the same for spots of every size."
-        ),
+        "Hardness of the analytic laws of asperities; 2.8 times the yield strength where left out. Without brinell it "
+        "is the hardness of every law, the same for spots of every size.",
     ),
     "brinell": Key.quantity(
         "Pa",
-        (
-            'Brinell hardness as a pressure: HB 170 is "1.67 GPa". From 1.3 to 7.6 GPa the solved '
-            "contact and the laws of conductance take the Vickers hardness that indentations of each "
-            "size then have; outside of that, this one number."
-        ),
+        'Brinell hardness as a pressure: HB 170 is "1.67 GPa". From 1.3 to 7.6 GPa the solved contact and the laws of '
+        "conductance take the Vickers hardness that indentations of each size then have; outside of that, this one "
+        "number.",
     ),
     "friction": Key.within(0, MOST_FRICTION, "Static coefficient of friction, for the contact law."),
     "conductivity": Key.quantity("W/(m*K)", "Thermal conductivity; gives the conductance of joints."),

@@ -17,9 +17,7 @@ Point = tuple[float, float, float]
 
 def read_modes(table: Table) -> ModesChoice:
     """Read [modes]."""
-    choice = ModesChoice(**{key: table.get(key) for key in MODES})
-    table.close()
-    return choice
+    return ModesChoice(**{key: table.get(key) for key in MODES})
 
 
 def _levels(value: Any, name: str) -> tuple[float, ...]:
@@ -49,23 +47,17 @@ class ResponseChoice:
         first, last = table.get("from"), table.get("to")
         if first is not None and last is not None and not first < last:
             table.faults.add(f"response: from = {first:g} Hz must be below to = {last:g} Hz")
-        sides: list[tuple[tuple[Point, Point], ...]] = []
-        for key in ("input", "output"):
-            pairs = []
-            for one in table.tables(key):
-                pairs.append((one.get("point"), one.get("direction")))
-                one.close()
-            sides.append(tuple(pairs))
-        choice = cls(
-            inputs=sides[0],
-            outputs=sides[1],
+        inputs, outputs = (
+            tuple((one.get("point"), one.get("direction")) for one in table.tables(key)) for key in ("input", "output")
+        )
+        return cls(
+            inputs=inputs,
+            outputs=outputs,
             first=first,
             last=last,
             points=table.get("points"),
             structural_loss=table.get("structural_loss"),
         )
-        table.close()
-        return choice
 
 
 def read_order(table: Table, names: Sequence[str]) -> tuple[int, ...] | None:
@@ -77,25 +69,20 @@ def read_order(table: Table, names: Sequence[str]) -> tuple[int, ...] | None:
         return tuple(names.index(v) for v in value)
 
     found, passes = table.take("order", order), table.get("passes")
-    table.close()
     return None if found is None else found * passes
 
 
 MODES: Declared = {
     "count": Key.count("Number of elastic modes.", 10, most=MAX_MODES),
     "damping": Key.text(
-        (
-            "Loss of the joints: the same energy per cycle at every frequency, or dampers as in the "
-            "JK paper, which depend on the mesh."
-        ),
+        "Loss of the joints: the same energy per cycle at every frequency, or dampers as in the JK paper, which "
+        "depend on the mesh.",
         "hysteretic",
         ("hysteretic", "viscous"),
     ),
     "solver": Key.text(
-        (
-            'Factorisation; the fastest one found where left out. "mpi" is none, but multigrid over '
-            "as many processes as FAYING_MPI_PROCESSES says, else as there are cores."
-        ),
+        'Factorisation; the fastest one found where left out. "mpi" is none, but multigrid over as many processes as '
+        "FAYING_MPI_PROCESSES says, else as there are cores.",
         None,
         SOLVERS,
     ),
@@ -103,7 +90,7 @@ MODES: Declared = {
     "levels": Key(
         'a list, such as ["0.1 m/s^2", "1 m/s^2", "10 m/s^2"], or []',
         listed(QUANTITY, 0),
-        ("Accelerations of the point that moves most, rising, at which damping and frequency are found; [] for none."),
+        "Accelerations of the point that moves most, rising, at which damping and frequency are found; [] for none.",
         ModesChoice.levels,
         read=_levels,
         unit="m/s^2",

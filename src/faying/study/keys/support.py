@@ -13,7 +13,6 @@ def read_support(table: Table) -> Support | None:
     """Read one [[support]]; None where its faults leave none."""
     face = face_name(table, table.where)
     given = {key: table.get(key) for key in ("directions", "stiffness")}
-    table.close()
     return None if face is None else table.made(lambda: Support(face=face, **given))
 
 
@@ -21,7 +20,6 @@ def read_mass(table: Table) -> PointMass | None:
     """Read one [[mass]]; None where its faults leave none."""
     mass, face = table.get("mass"), face_name(table, table.where)
     given = {key: table.get(key) for key in ("point", "offset")}
-    table.close()
     return None if mass is None else table.made(lambda: PointMass(mass=mass, face=face, **given))
 
 

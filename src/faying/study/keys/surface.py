@@ -53,7 +53,6 @@ class SurfaceChoice:
             table.faults.add(
                 f"{table.where}.D = {choice.D}: the dimension of a surface is between 2 and 3, for example 2.4"
             )
-        table.close()
         return choice
 
     def read(self) -> "Surface":
@@ -213,10 +212,8 @@ SURFACE: Declared = {
     ).varying(_in_surface("G")),
     "scan_area": Key.quantity("m^2", "Area of the scan that D and G come from.").varying(_in_surface("scan_area")),
     "counter": Key.text(
-        (
-            'The other face: "same" (alike in its statistics, unrelated point by point), "smooth", '
-            "or the file of its scan."
-        ),
+        'The other face: "same" (alike in its statistics, unrelated point by point), "smooth", or the file of its '
+        "scan.",
         "same",
         examples=lambda: COUNTERS,
     ),

@@ -34,7 +34,7 @@ STUDY: Declared = {
         either=True,
     ),
     "alternative": Inner(
-        says=("Another law, surface or form for all joints, whose modes are listed with those of the study."),
+        says="Another law, surface or form for all joints, whose modes are listed with those of the study.",
         keys=ALTERNATIVE,
         many=True,
     ),
@@ -45,7 +45,7 @@ STUDY: Declared = {
         says="What the sheet of a bolt needs beyond the rest of the study.", keys=BOLT_SHEET, many=True
     ),
     "load": Inner(
-        says=("A load case on the preloaded structure, for `faying loads`. All that it gives acts together."),
+        says="A load case on the preloaded structure, for `faying loads`. All that it gives acts together.",
         keys=LOAD,
         many=True,
     ),
@@ -59,8 +59,8 @@ STUDY: Declared = {
     ),
     "uncertain": Inner(
         says=(
-            "Numbers that scatter, each named as an axis of a sweep (at the end of this page), with "
-            'a distribution such as "200 GPa +- 4 GPa" or "0.1 to 0.6".'
+            "Numbers that scatter, each named as an axis of a sweep (at the end of this page), with a distribution "
+            'such as "200 GPa +- 4 GPa" or "0.1 to 0.6".'
         ),
         free=True,
     ),

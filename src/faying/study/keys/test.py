@@ -79,7 +79,6 @@ def read_test(top: Table, loads: tuple[float, ...]) -> tuple[TestChoice | None, 
     if "file" in table.data and "frequencies" in table.data:
         top.faults.add("test has both file and frequencies; give one of them")
     listed, hammer = (None, _file(table, loads)) if "file" in table.data else (_listed(table, len(loads)), None)
-    table.close()
     return listed, hammer
 
 
@@ -181,7 +180,7 @@ TEST: Declared = {
     "loss_factors": Key(
         NUMBERS,
         LOSSES,
-        ("Measured loss factors, a number for each frequency, nan for none: `faying identify` uses them."),
+        "Measured loss factors, a number for each frequency, nan for none: `faying identify` uses them.",
     ),
     "damping_ratios": Key(
         NUMBERS, LOSSES, "Measured damping ratios, in place of loss factors, which are twice as much."

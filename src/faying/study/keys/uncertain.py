@@ -146,9 +146,9 @@ def read_uncertain(
     if table is None and not inside:
         return None
     reader = _Reader(known, faults)
-    for key, value in _flat(table or {}):
+    for path, value in flat(table or {}):
         try:
-            reader.take(key, value)
+            reader.take(".".join(path), value)
         except InputError as fault:
             faults.add(str(fault))
     for key, value in inside.items():
@@ -159,14 +159,14 @@ def read_uncertain(
     return reader.choice()
 
 
-def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Keys with dots, and their values: text, a list, a number, or a table that says what it is."""
+def flat(table: Mapping[str, Any], before: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Keys, each as its names in tables within tables, and their values: text, a list, a number, or a table of one."""
     for name, value in table.items():
-        key = f"{before}{name}"
-        if isinstance(value, Mapping) and value and not DISTRIBUTIONS & set(value) and key != MODEL:
-            yield from _flat(value, f"{key}.")
+        path = (*before, name)
+        if isinstance(value, Mapping) and value and not DISTRIBUTIONS & set(value) and ".".join(path) != MODEL:
+            yield from flat(value, path)
         else:
-            yield key, value
+            yield path, value
 
 
 class _Reader:

@@ -21,7 +21,6 @@ def read_waviness(table: Table) -> Waviness | None:
     """Read waviness = {...}; None where there is no size that can be used."""
     sizes, of_waves = ({name: table.get(name) for name in names} for names in (WAYS, OF_WAVES))
     stated = [way for way in WAYS if way in table.data]
-    table.close()
     if len(stated) != 1:
         table.faults.add(
             f"{table.where} has {'no size' if not stated else 'sizes by ' + ' and '.join(stated)}; give one of "
