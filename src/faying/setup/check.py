@@ -1,5 +1,6 @@
 """What can be said of a study in seconds, before anything is solved: faults, notes, what a run will need."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
@@ -275,7 +276,8 @@ def _selector_key(study: Study, label: str) -> str:
             return key
     if label.endswith("]") and label.split("[")[0] in ("support", "mass"):
         return f"{label}.face"
-    return f"geometry.face.{label}"
+    acting = re.fullmatch(r"(load\[\d+\]) (\w+) (\d+)", label)
+    return f"{acting[1]}.{acting[2]}[{acting[3]}].face" if acting else f"geometry.face.{label}"
 
 
 def _meshed(

@@ -97,7 +97,7 @@ def line_of(key: str, found: Mapping[str, int]) -> int | None:
             inside = [line for one, line in found.items() if one.startswith((f"{path}.", f"{path}["))]
             if inside:  # a table that is named by those within it alone
                 return min(inside)
-        key = re.sub(r"(?:\.[^.\[\]]*|\[\d+\]|^[^.\[\]]*)$", "", key)
+        key = key[: max(key.rfind("."), key.rfind("["), 0)]
     return None
 
 
