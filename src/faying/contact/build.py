@@ -100,10 +100,6 @@ def _plain(name: str) -> str:
     return name.strip().lower().replace("-", "").replace("_", "").replace(" ", "")
 
 
-def _quoted(name: str) -> str:
-    return repr(name) if len(name) <= 60 else shown(name)
-
-
 def find(name: str) -> LawKind:
     """Return the law called `name`, by label ("gw-ke") or class, in any case, with or without hyphens.
 
@@ -117,8 +113,9 @@ def find(name: str) -> LawKind:
     if kind is None:
         near = get_close_matches(_plain(name), known, n=1)
         hint = f"; did you mean {known[near[0]].label}?" if near else ""
+        quoted = repr(name) if len(name) <= 60 else shown(name)
         raise InputError(
-            f"no contact law {_quoted(name)}{hint}; the known ones are {', '.join(sorted(kinds(), key=str.lower))}"
+            f"no contact law {quoted}{hint}; the known ones are {', '.join(sorted(kinds(), key=str.lower))}"
         )
     return kind
 

@@ -84,12 +84,6 @@ def _facts(m0: float, ready: tuple[Prepared, Prepared], scans: tuple[Scan, Scan]
     )
 
 
-def _check(**scans: object) -> None:
-    for name, scan in scans.items():
-        if not isinstance(scan, Scan):
-            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
-
-
 def combine(
     scan_a: Scan, scan_b: Scan, *, degree: int = 1, convention: str = "yan-komvopoulos", gamma: float = 1.5
 ) -> Combined:
@@ -108,7 +102,9 @@ def combine(
     Raises:
         InputError: for anything but two areal scans, and where the bands of wavelength do not overlap by a factor of 4.
     """
-    _check(scan_a=scan_a, scan_b=scan_b)
+    for name, scan in (("scan_a", scan_a), ("scan_b", scan_b)):
+        if not isinstance(scan, Scan):
+            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
     c = prefactor(convention, gamma)
     ready = prepared(scan_a, degree=degree), prepared(scan_b, degree=degree)
     wholes = _whole(ready[0]), _whole(ready[1])

@@ -22,8 +22,8 @@ def on_cluster(
 ) -> Generator[tuple[Sequence[int], Rows]]:
     """Evaluate chunk by chunk on a cluster and yield indices and rows as they come.
 
-    What a dead worker leaves is done again by others, as often as the scheduler allows failures. Dask's backend of
-    joblib is no way to it: it waits for ever for a chunk that has killed its workers.
+    What a dead worker leaves is done again by others, as often as the scheduler allows failures. joblib has a backend
+    for Dask, which is not used here: it never returns where a chunk has killed its workers.
 
     Args:
         work: Makes the rows of some indices; it can be pickled.

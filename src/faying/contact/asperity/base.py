@@ -115,9 +115,10 @@ def powers(terms: tuple[Term, ...], x: Array) -> Array:
     return np.asarray(sum((c * x**n for c, n in terms), np.zeros_like(x)))
 
 
-def integrated(terms: tuple[Term, ...]) -> tuple[Term, ...]:
-    """Terms of the integral from zero."""
-    return tuple((c / (n + 1), n + 1) for c, n in terms)
+def work(piece: Piece, lower: float, x: Array) -> Array:
+    """Integral of P from the beginning of a piece to x, or to its end where x lies beyond; 0 before it."""
+    terms = tuple((c / (n + 1), n + 1) for c, n in piece.P)
+    return powers(terms, np.clip(x, lower, piece.upper)) - (powers(terms, np.full_like(x, lower)) if lower > 0 else 0.0)
 
 
 class PowerModel(AsperityModel):
@@ -135,23 +136,15 @@ class PowerModel(AsperityModel):
 
     def curve(self, x: Array) -> AsperityCurve:
         """Return the model without units at x >= 0."""
-        out = [np.zeros_like(x) for _ in range(4)]
-        lower, carried = 0.0, 0.0
+        P, A, dP, W = (np.zeros_like(x) for _ in range(4))
+        lower = 0.0
         for piece in self.pieces:
             here = (x > lower) & (x <= piece.upper)
-            if np.any(here):
-                v = x[here]
-                work = integrated(piece.P)
-                slope = tuple((c * n, n - 1) for c, n in piece.P if n != 0)
-                start = float(powers(work, np.array(lower))) if lower > 0 else 0.0
-                values = (powers(piece.P, v), powers(piece.A, v), powers(slope, v), carried + powers(work, v) - start)
-                for total, value in zip(out, values, strict=True):
-                    total[here] = value
-            if np.isfinite(piece.upper):
-                ends = powers(integrated(piece.P), np.array([piece.upper, lower] if lower > 0 else [piece.upper]))
-                carried += float(ends[0]) - (float(ends[1]) if lower > 0 else 0.0)
+            P[here], A[here] = powers(piece.P, x[here]), powers(piece.A, x[here])
+            dP[here] = powers(tuple((c * n, n - 1) for c, n in piece.P if n != 0), x[here])
+            W += work(piece, lower, x)
             lower = piece.upper
-        return AsperityCurve(*out)
+        return AsperityCurve(P, A, dP, W)
 
 
 @cache
