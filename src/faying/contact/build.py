@@ -4,14 +4,11 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache
-from importlib import import_module
-from inspect import isabstract, isclass
-from pkgutil import iter_modules
 from typing import ClassVar, final
 
 from faying.checks import instance
 from faying.contact.inputs import RoughSurface
-from faying.contact.law import ContactLaw
+from faying.contact.law import ContactLaw, found_in
 from faying.contact.parameter import FRACTAL
 from faying.errors import InputError, shown
 from faying.materials import ContactPair
@@ -56,15 +53,7 @@ class LawKind:
 @cache
 def laws() -> Mapping[str, type[ContactLaw]]:
     """Return every contact law by the name of its class, in alphabetical order, found among the files."""
-    package = import_module("faying.contact.models")
-    found: dict[str, type[ContactLaw]] = {}
-    for entry in iter_modules(package.__path__):
-        module = import_module(f"faying.contact.models.{entry.name}")
-        for name, value in vars(module).items():
-            own = isclass(value) and issubclass(value, ContactLaw) and value.__module__ == module.__name__
-            if own and not isabstract(value) and "name" in vars(value):
-                found[name] = value
-    return dict(sorted(found.items()))
+    return found_in("faying.contact.models", ContactLaw)
 
 
 AUTO = "auto"

@@ -2,17 +2,13 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cache
-from importlib import import_module
-from inspect import isabstract, isclass
 from math import pi, sqrt
-from pkgutil import iter_modules
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.law import checked
+from faying.contact.law import checked, found_in
 from faying.errors import InputError, shown
 from faying.materials import ContactPair
 from faying.typing import Array
@@ -147,22 +143,9 @@ class PowerModel(AsperityModel):
         return AsperityCurve(P, A, dP, W)
 
 
-@cache
-def _found() -> tuple[tuple[str, type[AsperityModel]], ...]:
-    package = import_module("faying.contact.asperity")
-    found: dict[str, type[AsperityModel]] = {}
-    for entry in iter_modules(package.__path__):
-        module = import_module(f"faying.contact.asperity.{entry.name}")
-        for name, value in vars(module).items():
-            own = isclass(value) and issubclass(value, AsperityModel) and value.__module__ == module.__name__
-            if own and not isabstract(value):
-                found[name] = value
-    return tuple(sorted(found.items()))
-
-
 def models() -> dict[str, type[AsperityModel]]:
     """Return every single-asperity model by the name of its class, in alphabetical order."""
-    return dict(_found())
+    return dict(found_in("faying.contact.asperity", AsperityModel))
 
 
 def summed_model(name: str, law: str) -> type[AsperityModel]:
