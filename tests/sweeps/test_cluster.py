@@ -2,19 +2,15 @@
 
 import pickle
 import sys
-import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
-import cloudpickle
 import numpy as np
 import pytest
 
 from faying.errors import FayingError, InputError, NotConverged, ReadError
 from faying.study.declaration.reader import StudyFaults
 from faying.sweeps import cluster as module
-from faying.sweeps.cluster import Parcel
 from faying.sweeps.parallel import each
 from tests.helpers.cluster import cluster_of, deadly, dying, slow, squares, threads
 
@@ -96,53 +92,22 @@ def test_an_interruption_takes_the_work_from_the_cluster(pair, tmp_path):
 
 
 def test_other_versions_are_refused_before_the_work(pair, monkeypatch):
+    here = module.versions()["faying"]
     other = module.versions() | {"faying": "0.0.9"}
     monkeypatch.setattr(module, "versions", lambda: other)
-    here = module.metadata.version("faying")
     with pytest.raises(
         InputError, match=f"the scheduler of the Dask cluster has faying {here}, and this process faying 0"
     ):
         done(squares, pair.address)
-    # as on a worker that came after they were compared
-    monkeypatch.setattr(module, "_check_versions", lambda client: None)
-    with pytest.raises(InputError, match=rf"worker tcp://[0-9.:]* of the Dask cluster has faying {here}, and this"):
-        done(squares, pair.address)
 
 
 def test_versions_are_compared_where_they_matter():
-    one = module._short({"python": "3.12.4.final.0", "faying": "0.1.0", "numpy": "2.4.6", "scipy": "1.17.1"})
-    assert one == module._short({"python": "3.12.9", "faying": "0.1.0", "numpy": "2.4.0", "scipy": "1.17.0"})
-    assert module._difference("x", one, one) == ""
-    assert "has faying none, and this process faying 0.1.0" in module._difference(
-        "x", module._short({**one, "faying": None}), one
-    )
-
-
-def test_threads_of_a_worker_do_not_share_the_work():
-    """Two that are at it at once have a copy each, and take it up again."""
-    meet = threading.Barrier(2, timeout=20)
-    parcel = Parcel(cloudpickle.dumps(Counting()))
-
-    def run(_):
-        meet.wait()
-        return parcel.rows([0])["calls"][0]
-
-    with ThreadPoolExecutor(2) as pool:
-        assert list(pool.map(run, range(2))) == [1, 1]
-    assert parcel.rows([0])["calls"][0] == 2
-    assert sys.getsizeof(parcel) >= len(parcel.pickled)
-
-
-class Counting:
-    """Counts its calls, as a recipe keeps its laws."""
-
-    def __init__(self):
-        self.calls = 0
-
-    def __call__(self, indices):
-        self.calls += 1
-        time.sleep(0.2)
-        return {"calls": np.array([self.calls for _ in indices])}
+    one = {"python": "3.12.4.final.0", "faying": "0.1.0", "numpy": "2.4.6", "scipy": "1.17.1"}
+    module._compare("x", one, {"python": "3.12.9", "faying": "0.1.0", "numpy": "2.4.0", "scipy": "1.17.0"})
+    with pytest.raises(InputError, match="has faying none, and this process faying 0.1.0"):
+        module._compare("x", {**one, "faying": None}, one)
+    with pytest.raises(InputError, match="has numpy 2.3, and this process numpy 2.4"):
+        module._compare("x", {**one, "numpy": "2.3.9"}, one)
 
 
 def test_work_of_a_dead_worker_is_done_by_another(pair, tmp_path):
@@ -157,9 +122,9 @@ def test_nobody_is_left(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "WAIT", 2.0)
     monkeypatch.setattr(module, "ANSWER", 3.0)
     with cluster_of(tmp_path, 1) as cluster:
-        with pytest.raises(FayingError, match=r"has had no worker for 2 s, and points .* are left: start workers"):
+        with pytest.raises(FayingError, match=r"has no worker, and gave nothing for 2 s: .* the points that are left"):
             done(deadly, cluster.address)
-        with pytest.raises(FayingError, match="has had no worker for 2 s, and samples 0 to 15 are left"):
+        with pytest.raises(FayingError, match=r"gave nothing for 2 s: start workers .* the samples that are left"):
             list(each(squares, CHUNKS, 1, cluster.address, "samples"))
         cluster.add(1)
         with pytest.raises(FayingError, match="went away, was restarted, or cancelled the work; the same command"):
@@ -168,10 +133,10 @@ def test_nobody_is_left(tmp_path, monkeypatch):
             done(squares, cluster.address)
 
 
-def test_work_that_kills_every_worker_is_named(tmp_path):
+def test_work_that_kills_every_worker(tmp_path):
     with cluster_of(tmp_path, 2, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as cluster:
         found = {}
-        with pytest.raises(FayingError, match=r"every worker died that evaluated points .*2 to 3") as fault:
+        with pytest.raises(FayingError, match=r"every worker died that evaluated \d+ of the points") as fault:
             done(deadly, cluster.address, found=found)
         assert "All other points are done" in str(fault.value)
         assert len(cluster.alive()) == 1
@@ -189,8 +154,3 @@ def test_the_package_is_missing(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(InputError, match="--dask needs the package distributed: add --extra dask"):
         done(squares, "tcp://127.0.0.1:1")
-
-
-def test_indices_in_messages():
-    assert module._ranges([[9, 7, 8], [3], [5]]) == "3, 5, 7 to 9"
-    assert module._ranges([range(0, 40, 2)]).endswith("14, and so on (20 in all)")

@@ -83,7 +83,9 @@ def balanced(
         at_bound = x >= ceiling
         pinned = np.flatnonzero(at_bound & (now.force <= 0))
         loose = ~_mask(body.size, pinned)
-        scale = float(np.abs(now.force[pinned]).sum()) or _stretch(body, now)
+        # where nothing presses, the force of the stresses on the finest elements
+        inner = float(np.abs(now.returned.stress).max() * np.median(body.quads.weight) ** (2 / 3))
+        scale = float(np.abs(now.force[pinned]).sum()) or inner
         imbalance = float(np.linalg.norm(now.force[loose])) / scale if scale else 0.0
         if imbalance < tolerance:
             pressing = np.flatnonzero(~loose[body.touching])
@@ -111,8 +113,3 @@ def balanced(
         f"{tolerance:g}),"
         f" largest at r = {r:.4g} m, z = {z:.4g} m; take more steps, or a finer mesh"
     )
-
-
-def _stretch(body: Body, now: Balance) -> float:
-    """A force to measure the imbalance by when nothing presses: that of the stresses on the finest elements."""
-    return float(np.abs(now.returned.stress).max() * np.median(body.quads.weight) ** (2 / 3))

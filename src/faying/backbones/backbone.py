@@ -344,7 +344,12 @@ def _curves(
     store: CurveStore,
     progress: _Progress,
 ) -> list[Backbone]:
-    cases = [_under(case, law) for law in choice.laws] or [case]
+    cases = []
+    for law in choice.laws:
+        under = changed(case, _on_all_joints(case.study, law))
+        kept = [note for note in case.notes if note not in law_reasons(case.structure, case.surfaces)]
+        cases.append(replace(under, notes=(*kept, *law_reasons(under.structure, under.surfaces))))
+    cases = cases or [case]
     places = [(one, k) for one in cases for k in indices]
     bases = _bases(places, choice, progress)
     prepared = [
@@ -380,13 +385,6 @@ def _on_all_joints(study: Study, law: LawChoice) -> AlternativeChoice:
     """A law on all joints, with the parameters that the study gives it where all of them have it already."""
     own = {study.law_of(joint).kind.label: study.law_of(joint) for joint in study.joints}
     return AlternativeChoice(name=law.model, law=own[law.kind.label] if set(own) == {law.kind.label} else law)
-
-
-def _under(case: Case, law: LawChoice) -> Case:
-    """The case under another law, with what there is to say of it."""
-    other = changed(case, _on_all_joints(case.study, law))
-    kept = [note for note in case.notes if note not in law_reasons(case.structure, case.surfaces)]
-    return replace(other, notes=(*kept, *law_reasons(other.structure, other.surfaces)))
 
 
 def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress: _Progress) -> list[SlipBasis]:

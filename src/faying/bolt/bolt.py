@@ -22,7 +22,7 @@ from faying.materials import material_of
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.typing import Array
-from faying.units import show
+from faying.units import in_mm, show
 
 # proportions of hexagon heads and nuts, of the thread's diameter: width across flats, heights (ISO 4014, ISO 4032)
 ACROSS_FLATS, HEAD_HEIGHT, NUT_HEIGHT = 1.5, 0.64, 0.85
@@ -268,7 +268,9 @@ class Bolt:
                 f"bolt {self.name!r}: its shank is {show(self.shank, 'm')} long, but its thread begins to engage "
                 f"{show(place.free, 'm')} below its head; give a length from 0 to that"
             )
-        extent = seat or _extent(mesh.points[mesh.face_nodes(self.faces[0])], point, place.axis)
+        arm = mesh.points[mesh.face_nodes(self.faces[0])] - point
+        radius = np.linalg.norm(arm - np.outer(arm @ place.axis, place.axis), axis=1)
+        extent = seat or (2 * float(radius.min()), 2 * float(radius.max()))
         return FittedBolt(**vars(place), ends=ends, extent=extent, E_tapped=tapped)
 
     def placed(self, mesh: NamedFaces) -> "BoltPlace":
@@ -371,9 +373,7 @@ class Bolt:
             offset, hole, face = min(near, key=lambda one: one[0])
             raise InputError(
                 f"bolt {self.name!r}: its axis is {show(offset, 'm')} away from the centre of the hole of "
-                f"{show(2 * hole.radius, 'm')} in {face!r}, at "
-                f"({', '.join(f'{1e3 * x:.4g}' for x in hole.centre)}) mm; "
-                "give that point as `at`"
+                f"{show(2 * hole.radius, 'm')} in {face!r}, at {in_mm(hole.centre)}; give that point as `at`"
             )
         return None
 
@@ -433,12 +433,6 @@ def frame_about(axis: Array) -> Array:
     second = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     second /= np.linalg.norm(second)
     return np.stack([axis, second, np.cross(axis, second)])
-
-
-def _extent(points: Array, centre: Array, axis: Array) -> tuple[float, float]:
-    arm = points - centre
-    radius = np.linalg.norm(arm - np.outer(arm @ axis, axis), axis=1)
-    return 2 * float(radius.min()), 2 * float(radius.max())
 
 
 @dataclass(frozen=True, kw_only=True)

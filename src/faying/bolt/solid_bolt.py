@@ -13,6 +13,7 @@ from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.mesh import Mesh
 from faying.misuse import checked_call
 from faying.typing import Array, Index
+from faying.units import in_mm
 
 MAX_LAYER_UNKNOWNS = 6000  # unknowns of the layer that is drawn in: its dense block takes 0.3 GB then
 
@@ -65,7 +66,7 @@ class SolidBolt:
         before, behind = ((mesh.points[mesh.face_nodes(face)] - place) @ axis for face in self.faces)
         if before.max() > 0 or behind.min() <= 0:
             raise InputError(
-                f"bolt {self.name!r}: the plane through {_mm(place)} mm across its axis does not part {head!r} from "
+                f"bolt {self.name!r}: the plane through {in_mm(place)} across its axis does not part {head!r} from "
                 f"{nut!r}; give a point between them as `at`"
             )
         nodes = mesh.part_nodes(part)
@@ -74,13 +75,13 @@ class SolidBolt:
         met = [f for f in joined if mesh.face_part.get(f) == part and np.isin(mesh.face_nodes(f), layer).any()]
         if met:
             raise InputError(
-                f"bolt {self.name!r}: the plane through {_mm(place)} mm that cuts its shank meets its face "
+                f"bolt {self.name!r}: the plane through {in_mm(place)} that cuts its shank meets its face "
                 f"{met[0]!r}, which is in a joint; give a point of the bare shank as `at`, or a finer mesh"
             )
         others = [other for other in mesh.parts if other != part and np.isin(mesh.part_nodes(other), layer).any()]
         if others:
             raise InputError(
-                f"bolt {self.name!r}: the plane through {_mm(place)} mm that cuts its shank meets nodes that it "
+                f"bolt {self.name!r}: the plane through {in_mm(place)} that cuts its shank meets nodes that it "
                 f"shares with {others[0]!r}, to which it is bonded; give a point of the bare shank as `at`"
             )
         if 3 * len(layer) > MAX_LAYER_UNKNOWNS:
@@ -189,7 +190,3 @@ def _across(mesh: Mesh, part: str, above: Index) -> Index:
         inside = far[cells].sum(axis=1)
         found.append(cells[(inside > 0) & (inside < cells.shape[1])].ravel())
     return np.unique(np.concatenate(found))
-
-
-def _mm(point: Array) -> str:
-    return "(" + ", ".join(f"{1e3 * x:.4g}" for x in point) + ")"

@@ -4,14 +4,11 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache
-from importlib import import_module
-from inspect import isabstract, isclass
-from pkgutil import iter_modules
 from typing import ClassVar, final
 
 from faying.checks import instance
 from faying.contact.inputs import RoughSurface
-from faying.contact.law import ContactLaw
+from faying.contact.law import ContactLaw, found_in
 from faying.contact.parameter import FRACTAL
 from faying.errors import InputError, shown
 from faying.materials import ContactPair
@@ -56,15 +53,7 @@ class LawKind:
 @cache
 def laws() -> Mapping[str, type[ContactLaw]]:
     """Return every contact law by the name of its class, in alphabetical order, found among the files."""
-    package = import_module("faying.contact.models")
-    found: dict[str, type[ContactLaw]] = {}
-    for entry in iter_modules(package.__path__):
-        module = import_module(f"faying.contact.models.{entry.name}")
-        for name, value in vars(module).items():
-            own = isclass(value) and issubclass(value, ContactLaw) and value.__module__ == module.__name__
-            if own and not isabstract(value) and "name" in vars(value):
-                found[name] = value
-    return dict(sorted(found.items()))
+    return found_in("faying.contact.models", ContactLaw)
 
 
 AUTO = "auto"
@@ -100,10 +89,6 @@ def _plain(name: str) -> str:
     return name.strip().lower().replace("-", "").replace("_", "").replace(" ", "")
 
 
-def _quoted(name: str) -> str:
-    return repr(name) if len(name) <= 60 else shown(name)
-
-
 def find(name: str) -> LawKind:
     """Return the law called `name`, by label ("gw-ke") or class, in any case, with or without hyphens.
 
@@ -117,8 +102,9 @@ def find(name: str) -> LawKind:
     if kind is None:
         near = get_close_matches(_plain(name), known, n=1)
         hint = f"; did you mean {known[near[0]].label}?" if near else ""
+        quoted = repr(name) if len(name) <= 60 else shown(name)
         raise InputError(
-            f"no contact law {_quoted(name)}{hint}; the known ones are {', '.join(sorted(kinds(), key=str.lower))}"
+            f"no contact law {quoted}{hint}; the known ones are {', '.join(sorted(kinds(), key=str.lower))}"
         )
     return kind
 

@@ -3,8 +3,11 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from functools import cache, cached_property
+from importlib import import_module
+from inspect import isabstract, isclass
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +28,9 @@ from faying.units import show
 if TYPE_CHECKING:
     import matplotlib.axes
 
-__all__ = ["ContactLaw", "Parameter", "Response", "checked", "require"]
+__all__ = ["ContactLaw", "Parameter", "Response", "checked", "found_in", "require"]
+
+Kind = TypeVar("Kind")
 
 TABLE_POINTS = 500
 # from this many pressures on, at_pressure reads the checked table unless asked to be exact
@@ -312,3 +317,16 @@ class ContactLaw(Summary, ABC):
             worst = float(np.nanmax(np.abs(root.f_x)))
             raise NotConverged(f"{self.name}: inversion for pressure stopped {worst:.1e} short (relative)")
         return self._from_parameter(np.asarray(root.x))
+
+
+@cache
+def found_in(package: str, kind: type[Kind]) -> Mapping[str, type[Kind]]:
+    """Classes of a kind that have a name of their own, in the files of a package, by class in alphabetical order."""
+    found: dict[str, type[Kind]] = {}
+    for entry in iter_modules(import_module(package).__path__):
+        module = import_module(f"{package}.{entry.name}")
+        for name, value in vars(module).items():
+            own = isclass(value) and issubclass(value, kind) and value.__module__ == module.__name__
+            if own and not isabstract(value) and "name" in vars(value):
+                found[name] = value
+    return dict(sorted(found.items()))

@@ -84,15 +84,13 @@ def law_plot(law: DrawnLaw, pressure: ArrayLike | None, axes: Any) -> "list[Axes
     stiff.set_ylabel("stiffness per area [MPa/µm]")
     outside = "" if response.valid.all() else "; dotted: outside its range"
     stiff.legend(loc="upper left")
-    stiff.set_title(f"{headline(law.name)}: {plain(_ends(law))}{outside}", fontsize=SMALL)
+    stiff.set_title(
+        f"{headline(law.name)}: ends at {plain(show(law.greatest_pressure, 'Pa'))}{outside}", fontsize=SMALL
+    )
     if response.area is not None:
         draw_curve(drawn[1], p, response.area, response.valid, color=colour(1))
         name_axes(drawn[1], "area")
     return drawn
-
-
-def _ends(law: DrawnLaw) -> str:
-    return f"ends at {show(law.greatest_pressure, 'Pa')}"
 
 
 def _pressures(law: DrawnLaw, pressure: ArrayLike | None) -> Array:

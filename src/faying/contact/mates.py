@@ -23,7 +23,6 @@ from faying.style import Summary
 from faying.surface.convention import NAMES
 from faying.surface.fractal_fit import FractalFit
 from faying.surface.scan import Profile, Scan
-from faying.typing import Array
 from faying.units import show
 
 if TYPE_CHECKING:
@@ -215,7 +214,7 @@ class Mates(Summary):
         solved = kind.label == AUTO and isinstance(faces.face, Scan)  # the half-space and the laws of summits
         fitted = kind.takes(OF_FACES, given or {}) and not solved
         surface = faces.rough if fitted else faces.unfitted
-        return surface if self.progress is None else _watched(surface, self.progress)
+        return surface if self.progress is None else replace(surface, progress=self.progress)
 
     def choose(self, name: str | LawKind = AUTO, given: Mapping[str, object] | None = None) -> Choice:
         """Return a law of these faces, and why it was taken.
@@ -271,8 +270,10 @@ class Mates(Summary):
             scanned = isinstance(self.faces.face, Scan) or self.faces.unfitted.scan is not None
             fed = ("fractal", "moments", *(("scan",) if scanned else ()))
             named = [kind for kind in kinds().values() if kind.label != AUTO and kind.law.takes() in fed]
+        elif isinstance(names, str) or not isinstance(names, Sequence):  # one text would be read letter by letter
+            raise InputError(f'laws = {shown(names)}; give a list of names, for example ["jk", "persson"]')
         else:
-            named = [find(name) for name in _listed(names)]
+            named = [find(name) for name in names]
         made: dict[str, ContactLaw] = {}
         left_out: dict[str, str] = {}
         for kind in named:
@@ -286,7 +287,9 @@ class Mates(Summary):
     def comparison(self, pressure: ArrayLike | None = None, laws: Sequence[str] | None = None) -> Comparison:
         """Return the laws of these faces and their responses, as `compare` does, before they are put into a table."""
         made, left_out = self.laws(laws)
-        return compare(made, _pressures(pressure), left_out)
+        if pressure is None:
+            return compare(made, np.geomspace(*COMPARED), left_out)
+        return compare(made, np.atleast_1d(checked(pressure, name="pressure", unit="Pa", zero=False)), left_out)
 
     def compare(self, pressure: ArrayLike | None = None, *, laws: Sequence[str] | None = None) -> "xarray.Dataset":
         """Return every law that these faces feed, with the contact that is solved on the scan among them.
@@ -412,23 +415,6 @@ def _faces(face: object, **given: Any) -> RoughPair:
         raise InputError(f"cache = {shown(cache)}; give the folder as text or a Path")
     other = given.pop("other")
     return RoughPair(face=face, counter=other, cache=None if cache is None else Path(cache), **given)  # type: ignore[arg-type]
-
-
-def _watched(surface: RoughSurface, progress: Callable[[int, int], object]) -> RoughSurface:
-    return replace(surface, progress=progress)
-
-
-def _listed(names: object) -> list[Any]:
-    """Names of laws as a list; InputError for one text, which would be read letter by letter, and for no list."""
-    if isinstance(names, str) or not isinstance(names, Sequence):
-        raise InputError(f'laws = {shown(names)}; give a list of names, for example ["jk", "persson"]')
-    return list(names)
-
-
-def _pressures(pressure: ArrayLike | None) -> Array:
-    if pressure is None:
-        return np.geomspace(*COMPARED)
-    return np.atleast_1d(checked(pressure, name="pressure", unit="Pa", zero=False))
 
 
 def _size(scan: Scan) -> str:

@@ -384,6 +384,16 @@ def _between(x: Array, y: Array, at: Array) -> Array:
     return np.asarray(PchipInterpolator(x, y)(at)) if len(x) > 1 else np.full(at.shape, y[0])
 
 
+def monotone(x: Array, values: Array) -> Callable[[Array], Array]:
+    """A monotone cubic through the logarithms where all values are positive, through the values else."""
+    from scipy.interpolate import PchipInterpolator
+
+    if not np.all(values > 0):
+        return lambda at: np.asarray(PchipInterpolator(x, values)(at))
+    curve = PchipInterpolator(x, np.log(values))
+    return lambda at: np.asarray(np.exp(curve(at)))
+
+
 def is_twofold(heights: Array) -> bool:
     """Whether a map is its own mirror image, shifted by half a side, as one laid on its like is.
 

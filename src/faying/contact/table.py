@@ -7,6 +7,7 @@ changes, the cell is marked and its pressures are inverted one by one. So kinks 
 
 from collections.abc import Callable
 from math import ceil, log
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from faying.typing import Array
 STEP = 0.01  # width of a cell in ln(pressure)
 DECADES = 12  # below the greatest pressure; lighter loads are inverted one by one
 TOLERANCE = 3e-7  # relative, at the points of the check
+EXACT = "exact"  # which pressures are inverted one by one
 CHUNK = 16384  # pressures at a time, so that the work stays in the cache
 
 
@@ -55,43 +57,22 @@ class PressureTable:
 
     def at(self, pressure: Array) -> Response:
         """Return the response at flat positive pressures [Pa] up to the greatest."""
-        n = pressure.size
-        out = {name: np.empty(n) for name in self.columns}
-        cell = np.empty(n, dtype=np.intp)
-        by_hand: list[NDArray[np.intp]] = []
-        t, work = np.empty(CHUNK), np.empty(CHUNK)
-        for start in range(0, n, CHUNK):
-            stop = min(start + CHUNK, n)
-            x, w, i = t[: stop - start], work[: stop - start], cell[start:stop]
-            np.log(pressure[start:stop], out=x)
-            x -= self.first
-            x *= 1 / self.step
-            outside = x < 0
-            np.clip(x, 0, self.cells - 0.5e-9, out=x)
-            i[:] = x
-            np.minimum(i, self.cells - 1, out=i)
-            x -= i
-            for name, (c0, c1, c2) in self.columns.items():
-                y = out[name][start:stop]
-                c2.take(i, out=y, mode="clip")
-                y *= x
-                c1.take(i, out=w, mode="clip")
-                y += w
-                y *= x
-                c0.take(i, out=w, mode="clip")
-                y += w
-            rest = np.flatnonzero(outside | ~self.good.take(i, mode="clip"))
-            if rest.size:
-                by_hand.append(rest + start)
-        reasons = {}
-        for name, mask in self.reasons.items():
-            reasons[name] = mask.take(cell, mode="clip") if mask.any() else np.zeros(n, dtype=bool)
-        if by_hand:
-            rows = np.concatenate(by_hand)
-            at = self.exact(pressure[rows])
-            for name, value in at.quantities().items():
-                if name in out:
-                    out[name][rows] = value
-            for name, mask in at.reasons.items():
-                reasons[name][rows] = mask
-        return Response(pressure=pressure.copy(), reasons=reasons, **out)
+        parts = [self._at(part) for part in np.array_split(pressure, ceil(pressure.size / CHUNK) or 1)]
+        rows = {name: np.concatenate([part[name] for part in parts]) for name in (*self.columns, *self.reasons, EXACT)}
+        by_hand = np.flatnonzero(rows.pop(EXACT))
+        if by_hand.size:
+            exact = self.exact(pressure[by_hand])
+            for name, value in (*exact.quantities().items(), *exact.reasons.items()):
+                if name in rows:
+                    rows[name][by_hand] = value
+        reasons = {name: rows.pop(name) for name in self.reasons}
+        return Response(pressure=pressure.copy(), reasons=reasons, **rows)
+
+    def _at(self, pressure: Array) -> dict[str, NDArray[Any]]:
+        """Quantities and reasons of some pressures, and which pressures are inverted one by one."""
+        x = (np.log(pressure) - self.first) / self.step
+        cell = np.clip(x.astype(np.intp), 0, self.cells - 1)
+        t = x - cell
+        out = {name: c0[cell] + t * (c1[cell] + t * c2[cell]) for name, (c0, c1, c2) in self.columns.items()}
+        out |= {name: mask[cell] for name, mask in self.reasons.items()}
+        return out | {EXACT: (x < 0) | ~self.good[cell]}

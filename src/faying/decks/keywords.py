@@ -43,7 +43,7 @@ def blocks(path: Path) -> Iterator[Block]:
             current = line
         elif current is not None:
             current.lines.append(line)
-        elif _is_data(line):
+        elif re.match(r"\s*[-+]?[\d.]+\s*(,|$)", line):  # numbers, where a title is none
             raise ReadError(f"{where}: data before the first keyword; is this an Abaqus input file?")
     if current is not None:
         yield current
@@ -86,11 +86,6 @@ def _keyword(line: str, where: str) -> Block:
     pairs = (part.partition("=") for part in rest if part.strip())
     options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
     return Block(re.sub(r"\s+", " ", name.strip().upper()), options, [], where)
-
-
-def _is_data(line: str) -> bool:
-    """Whether a line holds numbers, as the data below a keyword do; a title does not."""
-    return re.match(r"\s*[-+]?[\d.]+\s*(,|$)", line) is not None
 
 
 def orientations(deck: JointDeck) -> tuple[list[str], Index]:

@@ -88,6 +88,7 @@ class _Archive:
         notes = _left_out([kind for kind in self.dropped.values() if kind in _LEFT_OUT], self.commands)
         if not any(line.strip().upper() == "FINISH" for line in self.lines):
             notes.append(f"{self.path.name} has no FINISH: it may be cut short")
+        heads = [line.split(",") for line in self.lines if line.upper().startswith(("NBLOCK", "EBLOCK"))]
         elements = {*self.dropped, *(number for some in self.rows.values() for number, _ in some)}
         for kind, what, there in (("ELEM", "elements", elements), ("NODE", "nodes", {*self.numbers})):
             for name, numbers in self.sets[kind].items():
@@ -102,13 +103,9 @@ class _Archive:
             turned=index(self.turned),
             notes=tuple(notes),
             pretensions=self.bolts.sections(),
-            counted=self._says_counts(),
+            # every block of nodes and elements says how many it holds, which was then compared
+            counted=all(len(words) > 4 and words[4].strip().isdigit() and int(words[4]) > 0 for words in heads),
         )
-
-    def _says_counts(self) -> bool:
-        """Whether every block of nodes and elements says how many it holds, which was then compared."""
-        heads = [line.split(",") for line in self.lines if line.upper().startswith(("NBLOCK", "EBLOCK"))]
-        return all(len(words) > 4 and words[4].strip().isdigit() and int(words[4]) > 0 for words in heads)
 
     def _passed(self, k: int) -> int:
         """Pass over a line that is a command, or numbers of another one (RLBLOCK, LCURV, *PREAD, ...).
@@ -215,7 +212,11 @@ class _Archive:
         while len(values) < count:
             values += _cut(self.lines[k], width)
             k += 1
-        self.sets[words[2].upper()[:4]][words[1]] = _unrolled(values)
+        # a negative number ends a range that begins with the number before it
+        self.sets[words[2].upper()[:4]][words[1]] = joined(
+            ranged(before + 1, -value, 1, "CMBLOCK") if value < 0 else index([value])
+            for before, value in zip([0, *values], values, strict=False)
+        )
         return k
 
 
@@ -295,14 +296,6 @@ def _width(form: str) -> int:
 def _cut(line: str, width: int) -> list[int]:
     cells = [line[i : i + width] for i in range(0, len(line.rstrip()), width)]
     return [int(cell) for cell in cells]
-
-
-def _unrolled(values: list[int]) -> np.ndarray:
-    """A negative number ends a range that begins with the number before it."""
-    return joined(
-        ranged(before + 1, -value, 1, "CMBLOCK") if value < 0 else index([value])
-        for before, value in zip([0, *values], values, strict=False)
-    )
 
 
 TYPE = 9101  # of the stiffness; the next is that of the dampers

@@ -12,6 +12,7 @@ from faying import units
 from faying.case.case import checked_mesh, joint_law, structure_of, surfaces_of
 from faying.checks import number
 from faying.decks.deck import ContactProperty, JointDeck
+from faying.decks.meshfile import last_element
 from faying.decks.system import UnitSystem
 from faying.decks.write import write
 from faying.errors import InputError
@@ -156,7 +157,8 @@ def attach(
     if solving:
         law, at_points, origin = _solved(moved, mesh, faces, preload)
     else:
-        law = _joint_law(study, spec, mesh, faces, materials)
+        (surface,) = surfaces_of(replace(study, joints=(spec,)))
+        law = joint_law(spec, study.law_of(spec), surface, *(materials[mesh.face_part[face]] for face in faces))
         at_points, origin = read_pressure(pressure, mesh, faces, interface)
     pairs, used = _pairs(interface, law, at_points, coupling)
     if coupling == "auto" and not pairs.lumped:
@@ -183,7 +185,7 @@ def attach(
         viscous=viscous,
         paper=damping == "paper",
         frequency=at_frequency,
-        first_element=_first_free(file),
+        first_element=(last_element(file) // 100_000 + 1) * 100_000 + 1,  # a round number above all of the file
         contact=_contact(law, spec, float(used.max()), mean),
     )
     return Attachment(deck=deck, interface=interface, materials=materials, notes=tuple(dict.fromkeys([*notes, *flags])))
@@ -273,14 +275,6 @@ def _materials(study: Study, mesh: Mesh, faces: tuple[str, str]) -> dict[str, Ma
                 f"add [part.{part}]"
             )
     return out
-
-
-def _joint_law(
-    study: Study, spec: JointChoice, mesh: Mesh, faces: tuple[str, str], materials: Mapping[str, Material]
-) -> JointLaw:
-    surface = surfaces_of(replace(study, joints=(spec,)))[0]
-    rough, other = (materials[mesh.face_part[face]] for face in faces)
-    return joint_law(spec, study.law_of(spec), surface, rough, other)
 
 
 def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
@@ -376,10 +370,3 @@ def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> 
         friction=UNKNOWN_FRICTION if spec.friction is None else spec.friction,
         given=spec.friction is not None,
     )
-
-
-def _first_free(file: Path) -> int:
-    """A round number above those of all elements of the file."""
-    from faying.decks.meshfile import last_element
-
-    return (last_element(file) // 100_000 + 1) * 100_000 + 1

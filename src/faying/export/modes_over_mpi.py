@@ -46,17 +46,13 @@ def modes_over_mpi(
     check_shift(stiffness, mass, shift_frequency)
     solver = OverMpi(points, processes, n)
     if points is not None:
-        rigid = _free(stiffness, rigid_motions(points))
+        motions = rigid_motions(points)
+        _, size, right = np.linalg.svd(stiffness @ motions, full_matrices=False)
+        most = np.linalg.norm(stiffness.diagonal()[:, None] * motions)
+        rigid = motions @ right[size < MIN_RESISTANCE * most].T  # what the stiffness does not resist
         return refined_modes(
             stiffness, mass, count, rigid=rigid, shift_frequency=shift_frequency, solver=solver
         ), solver
     matrix = Shifted(stiffness=stiffness.tocsr(), mass=mass.tocsr(), shift=(2 * np.pi * shift_frequency) ** 2)
     factor = solver.factorise(matrix, single=False)
     return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor), solver
-
-
-def _free(stiffness: Any, motions: Array) -> Array:
-    """The motions (n, r) among six orthonormal ones that a stiffness does not resist."""
-    _, size, right = np.linalg.svd(stiffness @ motions, full_matrices=False)
-    most = np.linalg.norm(stiffness.diagonal()[:, None] * motions)
-    return np.asarray(motions @ right[size < MIN_RESISTANCE * most].T)

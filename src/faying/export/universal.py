@@ -38,7 +38,8 @@ def write(result: Result, folder: Path) -> list[Path]:
     test_modes.uff and test_frf.uff: the model at the preload of the test, in the test's numbers and frame.
     """
     response = result.response
-    labels = _labels(response)
+    ends = () if response is None else (*response.inputs, *response.outputs)
+    labels = {point: k for k, point in enumerate(dict.fromkeys(tuple(p) for p, _ in ends), 1)}
     nearest = [int(np.argmin(np.linalg.norm(result.outline - np.array(point), axis=1))) for point in labels]
     nodes = _spread(result.outline, nearest)
     positions = {k + 1: tuple(float(v) for v in result.outline[node]) for k, node in enumerate(nodes)}
@@ -103,12 +104,6 @@ def _modes(frequencies: Array, losses: Array, shapes: Array, positions: Mapping[
         dofs=dofs,
         positions=positions,  # type: ignore[arg-type]
     )
-
-
-def _labels(response: Receptance | None) -> dict[tuple[float, ...], int]:
-    """Number the points of a response from 1."""
-    ends = () if response is None else (*response.inputs, *response.outputs)
-    return {point: k + 1 for k, point in enumerate(dict.fromkeys(tuple(p) for p, _ in ends))}
 
 
 def _frf(response: Receptance, labels: dict[tuple[float, ...], int]) -> FRF:

@@ -9,6 +9,7 @@ from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
 from faying.geometry.face_triangles import FacePieces, FaceTriangles
+from faying.geometry.seen_along import across
 from faying.typing import Array
 
 Sides = tuple[float, float]
@@ -52,10 +53,7 @@ class FaceAxes:
         normal = interface.weights @ interface.normals
         normal = normal / np.linalg.norm(normal)
         flat = bool(np.min(interface.normals @ normal) > CURVED)
-        helper = np.eye(3)[np.argmin(np.abs(normal))]
-        u = np.cross(normal, helper)
-        u /= np.linalg.norm(u)
-        plane = np.stack([u, np.cross(normal, u)])
+        plane = across(normal).T
         outlines = [mesh.points[mesh.face_nodes(face)] @ plane.T for face in faces]
         least = min((_least_rectangle(outline) for outline in outlines), key=lambda found: found[0])
         if along is None:

@@ -431,7 +431,8 @@ def shared_volumes(solids: Sequence[Any], names: Sequence[str]) -> list[str]:
     found = []
     for k, one in enumerate(solids):
         for j in range(k):
-            if _apart(one, solids[j]):
+            (low, high), (bottom, top) = one.bounding_box, solids[j].bounding_box
+            if any(a > d or c > b for a, b, c, d in zip(low, high, bottom, top, strict=True)):
                 continue
             both = one * solids[j]
             if both.mass > 1e-9 * one.mass:
@@ -440,11 +441,6 @@ def shared_volumes(solids: Sequence[Any], names: Sequence[str]) -> list[str]:
                 centre = f"({both.center.x:.4g}, {both.center.y:.4g}, {both.center.z:.4g}) mm"
                 found.append(f"{names[j]!r} and {names[k]!r} share {size} mm about {centre}")
     return found
-
-
-def _apart(one: Any, two: Any) -> bool:
-    (low, high), (bottom, top) = one.bounding_box, two.bounding_box
-    return any(a > d or c > b for a, b, c, d in zip(low, high, bottom, top, strict=True))
 
 
 def part_distance(path: Path) -> tuple[str, str, float] | None:

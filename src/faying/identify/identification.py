@@ -10,11 +10,12 @@ import numpy as np
 from faying.distribution import Distribution
 from faying.errors import ReadError
 from faying.identify.fit import Fit, Identifiability
+from faying.identify.prediction import about_median
 from faying.misuse import checked_call
 from faying.netcdf import Group, Variable
 from faying.notes import Note
 from faying.result.fields import RECORD, Recorded, from_group, listed, optional, to_group, variable
-from faying.style import COLOURS, WIDE, axes_of, drawing, load_colours, new_figure
+from faying.style import COLOURS, WIDE, axes_of, drawing, new_figure
 from faying.text import listed as joined
 from faying.text import notes_row
 from faying.typeset import name_of
@@ -394,8 +395,13 @@ def identification_axes(found: Identification, ax: Any = None) -> "list[Axes]":
 def _draw(axes: "Sequence[Axes]", found: Identification) -> None:
     upper, *lower = axes
     _parameters(upper, found)
+    labels = [
+        load_text(load) + (", left out" if out else "") for load, out in zip(found.loads, found.left_out, strict=True)
+    ]
     for ax, (test, predicted, unit) in zip(lower, _parts(found), strict=True):
-        _beside_test(ax, found, test, predicted, unit)
+        about_median(ax, labels, predicted, test, found.left_out, unit)
+        ax.set_xlabel("difference from the median [%]; bars 5 to 95 %, squares measured")
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
 
 
 def _parts(found: Identification) -> list[tuple[Array, Array, str]]:
@@ -441,24 +447,3 @@ def _parameters(ax: Any, found: Identification) -> None:
     ax.invert_yaxis()
     ax.grid(axis="x", alpha=0.3)
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
-
-
-def _beside_test(ax: Any, found: Identification, test: Array, predicted: Array, unit: str) -> None:
-    """Predicted quantiles (3, load, mode) over their median, and what was measured (load, mode)."""
-    low, middle, high = predicted
-    loads, modes = found.loads, test.shape[1]
-    shades = load_colours(len(loads))
-    for k, load in enumerate(loads):
-        place = np.arange(modes) + (k - (len(loads) - 1) / 2) * 0.7 / len(loads)
-        colour = shades[k]
-        ends = [100 * (1 - low[k] / middle[k]), 100 * (high[k] / middle[k] - 1)]
-        label = load_text(load) + (", left out" if found.left_out[k] else "")
-        ax.errorbar(np.zeros(modes), place, xerr=ends, fmt="|", color=colour, lw=2.2, ms=7, label=label)
-        face = "white" if found.left_out[k] else colour
-        ax.plot(100 * (test[k] / middle[k] - 1), place, "s", ms=4, mfc=face, mec=colour, mew=1.3)
-    last = [f"{value:.0f} {unit}" if unit else f"loss {value:.2g}" for value in middle[-1]]
-    ax.set_yticks(range(modes), [f"{k + 1}: {text}" for k, text in enumerate(last)])
-    ax.set_xlabel("difference from the median [%]; bars 5 to 95 %, squares measured")
-    ax.invert_yaxis()
-    ax.grid(axis="x", alpha=0.3)
-    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)

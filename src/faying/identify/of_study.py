@@ -20,7 +20,6 @@ from faying.identify.sampling.store import SampleStore
 from faying.joint.preload_case import preload_index
 from faying.misuse import checked_call
 from faying.progress import Report, silent
-from faying.study.keys.test import TestChoice
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.keys.varied import MODEL
 from faying.study.part_folder import fingerprint
@@ -170,6 +169,13 @@ def _identified(
     _check_laws(study, choice)
     stage, ensemble = _Stage(report), Ensemble.of(study, 8, seed)
     reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=stage, store=store)
+    losses = None
+    if test.losses is not None:
+        losses = Losses(
+            values=np.array(test.losses),
+            scatter=choice.test_loss or LOSS_TEST_SD,
+            discrepancy=choice.discrepancy_loss or LOSS_DISCREPANCY_SD,
+        )
     found, cut = [], cut_notes(ensemble.inputs.columns)
     for law in range(max(len(choice.models), 1)):
         model = StudyModel(ensemble, reduced, stage, law)
@@ -182,7 +188,7 @@ def _identified(
             seed=seed,
             test_sd=choice.test or TEST_SD,
             discrepancy=choice.discrepancy or DISCREPANCY_SD,
-            losses=_losses(test, choice),
+            losses=losses,
             report=report,
         )
         bases = [] if model.last is None else of_bases(reduced.errors(*model.last))
@@ -195,26 +201,14 @@ def _identified(
 
 def _check_draws(study: Study) -> None:
     """Raise InputError where waves are drawn anew in each sample: no number leads from one draw to the next."""
-    drawn = (
-        [] if study.uncertain is None else [i.key for i in study.uncertain.inputs if i.key.endswith(".waviness_seed")]
-    )
-    if drawn:
-        joint = drawn[0].split(".")[1]
+    keys = () if study.uncertain is None else (one.key for one in study.uncertain.inputs)
+    drawn = next((key for key in keys if key.endswith(".waviness_seed")), None)
+    if drawn is not None:
+        joint = drawn.split(".")[1]
         raise InputError(
             f"uncertain: the waves of joint {joint!r} are drawn anew in each sample, and no identification can follow "
             'that. Let their size scatter with one draw: joint.form.waviness = {Wq = "0.5 um to 2 um", seed = 0}'
         )
-
-
-def _losses(test: TestChoice, choice: UncertainChoice) -> Losses | None:
-    """The measured loss factors with the priors of their noise; None where there are none."""
-    if test.losses is None:
-        return None
-    return Losses(
-        values=np.array(test.losses),
-        scatter=choice.test_loss or LOSS_TEST_SD,
-        discrepancy=choice.discrepancy_loss or LOSS_DISCREPANCY_SD,
-    )
 
 
 def _check_laws(study: Study, choice: UncertainChoice) -> None:

@@ -35,7 +35,7 @@ from faying.style import (
 )
 from faying.text import listed, notes_row
 from faying.typeset import name_of
-from faying.typing import Array
+from faying.typing import Array, Mask
 from faying.units import in_mm, load_text
 
 if TYPE_CHECKING:
@@ -267,18 +267,22 @@ class Prediction(Recorded):
             raise InputError(
                 f"at most {answers.max(initial=0)} samples have an answer; shares of {numeric} inputs need {needed}"
             )
-        laws = self._laws(self.values)
-        scores = self._scores(self.values)[:, columns]
+
+        def scored(values: Array) -> Array:
+            """Standard normal scores (n, k) of the columns (k, n) that are numbers."""
+            numbers = zip(columns[:numeric], values, strict=False)
+            return np.stack([inputs.priors[k].score(x) for k, x in numbers], axis=1)
+
+        laws, scores = self._laws(self.values), scored(self.values.T[columns[:numeric]])
         fits, squared = {}, np.zeros(len(modes))
         for law in np.unique(laws[self.sound]):
             here = self.sound & (laws == law)
-            fits[law] = Surrogate.fit(scores[here, :numeric], seen[here][:, modes])
+            fits[law] = Surrogate.fit(scores[here], seen[here][:, modes])
             squared = squared + fits[law].error ** 2 * np.count_nonzero(here)
 
         def function(values: Array) -> Array:
             out = np.empty((len(values), len(modes)))
-            scored = [inputs.priors[k].score(x) for k, x in zip(columns[:numeric], values.T, strict=False)]
-            which, at = self._laws(values), np.stack(scored, axis=1)
+            which, at = self._laws(values), scored(values.T)
             for law in np.unique(which):
                 # a law without any answer has no part in the variance of the answers
                 out[which == law] = fits.get(law, next(iter(fits.values()))).predict(at[which == law])
@@ -294,10 +298,6 @@ class Prediction(Recorded):
         unexplained = np.minimum(missed, 1.0) * sampled
         found = found.beside(sampled - unexplained, np.stack([unexplained, 1 - sampled], axis=-1))
         return _at_modes(found, modes, seen.shape[1]), error
-
-    def _scores(self, values: Array) -> Array:
-        """Standard normal scores (n, d) of values (n, d)."""
-        return np.stack([prior.score(x) for prior, x in zip(self.inputs.priors, values.T, strict=True)], axis=1)
 
     def _laws(self, values: Array) -> Any:
         """Place of the law of each sample (n,); 0 where the law is certain."""
@@ -425,24 +425,32 @@ def interval_axes(found: Prediction, ax: "Axes | None" = None) -> "Axes":
 
 def _draw_intervals(ax: Any, found: Prediction) -> None:
     test, levels = found.observed[1], found.quantiles(LEVELS)
-    low, middle, high = levels.frequencies if levels.paired is None or found.test is None else levels.paired
-    count = len(found.loads)
-    shades = load_colours(count)
-    for load in range(count):
-        y = np.arange(middle.shape[1]) + (load - (count - 1) / 2) * 0.7 / count
-        shade = shades[load]
-        ends = [100 * (1 - low[load] / middle[load]), 100 * (high[load] / middle[load] - 1)]
-        label = load_text(found.loads[load])
-        ax.errorbar(np.zeros(len(y)), y, xerr=ends, fmt="|", color=shade, lw=2.2, ms=7, capsize=0, label=label)
-        ax.plot(100 * (test[load] / middle[load] - 1), y, "s", ms=4.5, mfc="white", mec=shade, mew=1.2)
+    predicted = levels.frequencies if levels.paired is None or found.test is None else levels.paired
+    about_median(ax, list(map(load_text, found.loads)), predicted, test, np.full(len(found.loads), True))
     if np.isfinite(test).any():
         ax.plot([], [], "s", ms=4.5, mfc="white", mec="0.3", mew=1.2, label="test")
-    ax.set_yticks(range(middle.shape[1]), [f"{k + 1}: {middle[-1, k]:.0f} Hz" for k in range(middle.shape[1])])
-    ax.invert_yaxis()
     ax.set_xlabel("difference from the median [%]; bars from 5 to 95 %")
     ax.set_ylabel("mode and its median")
-    ax.grid(axis="x", alpha=0.3)
     ax.set_title(headline(found.title))
+
+
+def about_median(ax: Any, loads: Sequence[str], predicted: Array, test: Array, hollow: Mask, unit: str = "Hz") -> None:
+    """Draw predicted quantiles (3, load, mode) over their median, and what was measured (load, mode) as squares.
+
+    loads: their labels; hollow: at which of them the squares are empty (load,).
+    """
+    low, middle, high = predicted
+    count, modes = len(loads), middle.shape[1]
+    for k, (load, shade) in enumerate(zip(loads, load_colours(count), strict=True)):
+        y = np.arange(modes) + (k - (count - 1) / 2) * 0.7 / count
+        ends = [100 * (1 - low[k] / middle[k]), 100 * (high[k] / middle[k] - 1)]
+        ax.errorbar(np.zeros(modes), y, xerr=ends, fmt="|", color=shade, lw=2.2, ms=7, label=load)
+        face = "white" if hollow[k] else shade
+        ax.plot(100 * (test[k] / middle[k] - 1), y, "s", ms=4.5, mfc=face, mec=shade, mew=1.2)
+    last = [f"{value:.0f} {unit}" if unit else f"loss {value:.2g}" for value in middle[-1]]
+    ax.set_yticks(range(modes), [f"{k + 1}: {text}" for k, text in enumerate(last)])
+    ax.invert_yaxis()
+    ax.grid(axis="x", alpha=0.3)
 
 
 @drawing

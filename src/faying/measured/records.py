@@ -51,7 +51,11 @@ def frf_from_records(
     f, x = numbers(force, "force", "records", "samples"), numbers(response, "response", "records", "outputs", "samples")
     places, forced = dofs(outputs), dofs((input,))
     _check(f, x, len(places), sampling_rate)
-    _check_choices(estimator, window, decay)
+    if estimator not in ("H1", "H2") or (window == "exponential") != (decay > 0):
+        raise InputError(
+            f"estimator = {estimator!r}, window = {window!r}, decay = {decay}: use H1 (noise on the response) or H2 "
+            '(noise on the force); give decay > 0 [1/s] with window="exponential", and only then'
+        )
     weight = _window(window, f.shape[1], decay / sampling_rate)
     F, X = np.fft.rfft(f * weight), np.fft.rfft(x * weight)
     s_ff = np.mean(np.abs(F) ** 2, axis=0)
@@ -84,14 +88,6 @@ def _check(force: Array, response: Array, outputs: int, sampling_rate: float) ->
         empty = int(np.argmin(np.any(force != 0, axis=1))) + 1
         raise InputError(f"the force of record {empty} is zero throughout; leave that hit out")
     number(sampling_rate, "sampling_rate", "1/s", least=0)
-
-
-def _check_choices(estimator: str, window: str, decay: float) -> None:
-    if estimator not in ("H1", "H2") or (window == "exponential") != (decay > 0):
-        raise InputError(
-            f"estimator = {estimator!r}, window = {window!r}, decay = {decay}: use H1 (noise on the response) or H2 "
-            '(noise on the force); give decay > 0 [1/s] with window="exponential", and only then'
-        )
 
 
 def _window(name: str, n: int, decay: float) -> Array:

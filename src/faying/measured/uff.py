@@ -86,6 +86,7 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         )
     elif nodal:
         shapes = [_nodal_shape(s, file) for s in nodal]
+    others, rigid = sorted({int(s["type"]) for s in sets} - TAKEN), sum(s["frequency"] == 0 for s in shapes)
     _check_numbered([s for s in sets if s["type"] == 58 and s["func_type"] == FRF_TYPE], file)
     return UniversalFile(
         source=str(file),
@@ -100,7 +101,8 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
         warnings=(
             *about_places,
             *about_results,
-            *_about_left_out(file, sets, sum(s["frequency"] == 0 for s in shapes)),
+            *([f"{file}: data sets {', '.join(map(str, others))} are not read"] if others else []),
+            *([f"{file}: {rigid} mode shapes at 0 Hz, rigid motion, are left out"] if rigid else []),
             *_about_lengths(file, positions, stated=units is not None or length_unit is not None),
         ),
     )
@@ -132,13 +134,6 @@ def _check_headers(lines: Sequence[str], file: Path) -> None:
                     f"{file}, line {k + OF_POINTS + 1}: {points.strip()!r} is longer than the {COLUMNS} columns in "
                     "which the points of a function are written; its header is damaged"
                 )
-
-
-def _about_left_out(file: Path, sets: Sequence[dict[str, Any]], rigid: int) -> list[str]:
-    """Notes on the data sets that are none of a test, and on rigid modes; rigid: how many there are."""
-    others = sorted({int(s["type"]) for s in sets} - TAKEN)
-    notes = [f"{file}: data sets {', '.join(map(str, others))} are not read"] if others else []
-    return notes + ([f"{file}: {rigid} mode shapes at 0 Hz, rigid motion, are left out"] if rigid else [])
 
 
 def _about_lengths(file: Path, positions: Mapping[int, Position], *, stated: bool) -> list[str]:

@@ -71,25 +71,6 @@ def _summed(a: tuple[Spectrum, Array], b: tuple[Spectrum, Array]) -> Spectrum:
     )
 
 
-def _facts(m0: float, ready: tuple[Prepared, Prepared], scans: tuple[Scan, Scan]) -> Facts:
-    """What the two scans say together: heights add as squares, lengths are those of the larger."""
-    return Facts(
-        Rq=m0**0.5,
-        Ra=float((2 / np.pi * m0) ** 0.5),
-        length=max(min(scan.size) for scan in scans),
-        missing=sum(r.missing for r in ready),
-        spikes=sum(r.spikes for r in ready),
-        areal=True,
-        notes=scans[0].notes + scans[1].notes,
-    )
-
-
-def _check(**scans: object) -> None:
-    for name, scan in scans.items():
-        if not isinstance(scan, Scan):
-            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
-
-
 def combine(
     scan_a: Scan, scan_b: Scan, *, degree: int = 1, convention: str = "yan-komvopoulos", gamma: float = 1.5
 ) -> Combined:
@@ -108,7 +89,9 @@ def combine(
     Raises:
         InputError: for anything but two areal scans, and where the bands of wavelength do not overlap by a factor of 4.
     """
-    _check(scan_a=scan_a, scan_b=scan_b)
+    for name, scan in (("scan_a", scan_a), ("scan_b", scan_b)):
+        if not isinstance(scan, Scan):
+            raise InputError(f"{name} is a {type(scan).__name__}: two areal scans (faying.Scan) can be combined")
     c = prefactor(convention, gamma)
     ready = prepared(scan_a, degree=degree), prepared(scan_b, degree=degree)
     wholes = _whole(ready[0]), _whole(ready[1])
@@ -127,7 +110,16 @@ def combine(
         raise InputError(f"the scans share too few wavelengths ({fault})") from fault
     parts = [summits(r) for r in ready]
     m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
-    facts = _facts(m0, ready, (scan_a, scan_b))
+    # heights add as squares, lengths are those of the larger
+    facts = Facts(
+        Rq=m0**0.5,
+        Ra=float((2 / np.pi * m0) ** 0.5),
+        length=max(min(scan_a.size), min(scan_b.size)),
+        missing=sum(r.missing for r in ready),
+        spikes=sum(r.spikes for r in ready),
+        areal=True,
+        notes=scan_a.notes + scan_b.notes,
+    )
     return Combined(
         fit=result(of_law(law, c, notes=notes), facts, method="psd", convention=convention, gamma=gamma, drawn=joint),
         Rq=m0**0.5,

@@ -43,9 +43,9 @@ class Roughness(Summary):
 
     def _of(self, areal: bool, name: str, value: float) -> float:
         if self.areal != areal:
-            one, other = ("a scan", "a profile") if areal else ("a profile", "a scan")
+            one, other, letter = ("a scan", "a profile", "R") if areal else ("a profile", "a scan", "S")
             raise InputError(
-                f"{name} is a number of {one}; these heights are those of {other}, which has {_like(name)}"
+                f"{name} is a number of {one}; these heights are those of {other}, which has {letter}{name[1:]}"
             )
         return value
 
@@ -107,11 +107,6 @@ class Roughness(Summary):
             f"{S}dq": f"{self.Rdq:.4g}",
             f"{S}dr": f"{self.Rdr:.4g}",
         }
-
-
-def _like(name: str) -> str:
-    """The name of the same number on the other kind of heights."""
-    return ("R" if name[0] == "S" else "S") + name[1:]
 
 
 def roughness(scan: AreaHeights | LineHeights | Prepared, *, degree: int = 1) -> Roughness:

@@ -2,17 +2,13 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cache
-from importlib import import_module
-from inspect import isabstract, isclass
 from math import pi, sqrt
-from pkgutil import iter_modules
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.law import checked
+from faying.contact.law import checked, found_in
 from faying.errors import InputError, shown
 from faying.materials import ContactPair
 from faying.typing import Array
@@ -115,9 +111,10 @@ def powers(terms: tuple[Term, ...], x: Array) -> Array:
     return np.asarray(sum((c * x**n for c, n in terms), np.zeros_like(x)))
 
 
-def integrated(terms: tuple[Term, ...]) -> tuple[Term, ...]:
-    """Terms of the integral from zero."""
-    return tuple((c / (n + 1), n + 1) for c, n in terms)
+def work(piece: Piece, lower: float, x: Array) -> Array:
+    """Integral of P from the beginning of a piece to x, or to its end where x lies beyond; 0 before it."""
+    terms = tuple((c / (n + 1), n + 1) for c, n in piece.P)
+    return powers(terms, np.clip(x, lower, piece.upper)) - (powers(terms, np.full_like(x, lower)) if lower > 0 else 0.0)
 
 
 class PowerModel(AsperityModel):
@@ -135,41 +132,20 @@ class PowerModel(AsperityModel):
 
     def curve(self, x: Array) -> AsperityCurve:
         """Return the model without units at x >= 0."""
-        out = [np.zeros_like(x) for _ in range(4)]
-        lower, carried = 0.0, 0.0
+        P, A, dP, W = (np.zeros_like(x) for _ in range(4))
+        lower = 0.0
         for piece in self.pieces:
             here = (x > lower) & (x <= piece.upper)
-            if np.any(here):
-                v = x[here]
-                work = integrated(piece.P)
-                slope = tuple((c * n, n - 1) for c, n in piece.P if n != 0)
-                start = float(powers(work, np.array(lower))) if lower > 0 else 0.0
-                values = (powers(piece.P, v), powers(piece.A, v), powers(slope, v), carried + powers(work, v) - start)
-                for total, value in zip(out, values, strict=True):
-                    total[here] = value
-            if np.isfinite(piece.upper):
-                ends = powers(integrated(piece.P), np.array([piece.upper, lower] if lower > 0 else [piece.upper]))
-                carried += float(ends[0]) - (float(ends[1]) if lower > 0 else 0.0)
+            P[here], A[here] = powers(piece.P, x[here]), powers(piece.A, x[here])
+            dP[here] = powers(tuple((c * n, n - 1) for c, n in piece.P if n != 0), x[here])
+            W += work(piece, lower, x)
             lower = piece.upper
-        return AsperityCurve(*out)
-
-
-@cache
-def _found() -> tuple[tuple[str, type[AsperityModel]], ...]:
-    package = import_module("faying.contact.asperity")
-    found: dict[str, type[AsperityModel]] = {}
-    for entry in iter_modules(package.__path__):
-        module = import_module(f"faying.contact.asperity.{entry.name}")
-        for name, value in vars(module).items():
-            own = isclass(value) and issubclass(value, AsperityModel) and value.__module__ == module.__name__
-            if own and not isabstract(value):
-                found[name] = value
-    return tuple(sorted(found.items()))
+        return AsperityCurve(P, A, dP, W)
 
 
 def models() -> dict[str, type[AsperityModel]]:
     """Return every single-asperity model by the name of its class, in alphabetical order."""
-    return dict(_found())
+    return dict(found_in("faying.contact.asperity", AsperityModel))
 
 
 def summed_model(name: str, law: str) -> type[AsperityModel]:

@@ -7,7 +7,7 @@ from typing import ClassVar, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import AsperityResponse, Piece, PowerModel, integrated, powers
+from faying.contact.asperity.base import AsperityResponse, Piece, PowerModel, work
 from faying.contact.law import checked
 from faying.contact.models.jk import asperity_regimes
 from faying.contact.substrate import asperity_share
@@ -77,17 +77,7 @@ class JK(PowerModel):
         out = {f.name: getattr(own, f.name) for f in fields(own)}
         out["stiffness"] = own.stiffness / (1 + 1.5 * q * np.sqrt(x))
         # work on the substrate: integral of P d(q x^1.5), each term of P by 1.5 q x^0.5
-        soft = tuple(p._replace(P=tuple((1.5 * q * a, n + 0.5) for a, n in p.P)) for p in self.pieces)
-        out["energy"] = own.energy + unit * work(soft, x)
+        for lower, piece in zip((0.0, *self.borders), self.pieces, strict=True):
+            soft = piece._replace(P=tuple((1.5 * q * a, n + 0.5) for a, n in piece.P))
+            out["energy"] = out["energy"] + unit * work(soft, lower, x)
         return AsperityResponse(**out)
-
-
-def work(pieces: tuple[Piece, ...], x: Array) -> Array:
-    """Integral of P from 0 to x over the pieces."""
-    total, lower = np.zeros_like(x), 0.0
-    for piece in pieces:
-        upper = np.clip(x, lower, piece.upper)
-        terms = integrated(piece.P)
-        total = total + powers(terms, upper) - (powers(terms, np.full_like(x, lower)) if lower > 0 else 0.0)
-        lower = piece.upper
-    return total

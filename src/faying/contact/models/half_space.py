@@ -15,7 +15,7 @@ from faying.contact.inputs import HeightMap
 from faying.contact.law import ContactLaw, Response
 from faying.contact.measured_range import MeasuredRange
 from faying.contact.parameter import TABLE, TEXT, Parameter
-from faying.contact.pressure_series import PressureSeries, cached, cached_numbers, solve_series
+from faying.contact.pressure_series import PressureSeries, cached, cached_numbers, monotone, solve_series
 from faying.errors import InputError, shown
 from faying.halfspace.sized import solve_with_size
 from faying.halfspace.solution import HalfSpaceContact
@@ -286,7 +286,7 @@ class HalfSpace(ContactLaw):
         rows |= {"low": series.least_factor(loading=loading), "high": series.greatest_factor(loading=loading)}
         x = np.log(series.pressure)
         closing = PchipInterpolator(x, series.closing)
-        return {name: _monotone(x, row) for name, row in rows.items()} | {
+        return {name: monotone(x, row) for name, row in rows.items()} | {
             "closing": closing,
             "closing_slope": closing.derivative(),
         }
@@ -399,13 +399,3 @@ def _check_map(scan: object) -> None:
         raise InputError(
             f"half-space: scan: {shown(scan)}; give an areal scan, as faying.read_scan returns it, levelled and filled"
         )
-
-
-def _monotone(x: Array, values: Array) -> Callable[[Array], Array]:
-    """A monotone cubic through the logarithms where all values are positive, through the values else."""
-    from scipy.interpolate import PchipInterpolator
-
-    if not np.all(values > 0):
-        return lambda at: np.asarray(PchipInterpolator(x, values)(at))
-    curve = PchipInterpolator(x, np.log(values))
-    return lambda at: np.asarray(np.exp(curve(at)))

@@ -1,10 +1,10 @@
 """A law from any measured or computed curve."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Self, final
+from typing import ClassVar, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,7 @@ from faying.columns import read_columns
 from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.measured_range import OF_CURVES
 from faying.contact.parameter import FILE, TABLE, TEXT, Parameter
+from faying.contact.pressure_series import monotone
 from faying.contact.response import UNITS
 from faying.errors import InputError, ReadError
 from faying.materials import ContactPair
@@ -138,15 +139,9 @@ class TabulatedLaw(ContactLaw):
         return float(p[0]), float(p[-1])
 
     @cached_property
-    def _curves(self) -> Mapping[str, tuple[bool, Any]]:
-        from scipy.interpolate import PchipInterpolator
-
+    def _curves(self) -> Mapping[str, Callable[[Array], Array]]:
         log_p = np.log(np.asarray(self.pressure))
-        out = {}
-        for name, value in self._columns.items():
-            positive = bool(np.all(value > 0))
-            out[name] = positive, PchipInterpolator(log_p, np.log(value) if positive else value)
-        return out
+        return {name: monotone(log_p, value) for name, value in self._columns.items()}
 
     def at_closure(self, pressure: ArrayLike) -> Response:
         """Return the response at pressures [Pa] within the table, any shape; InputError outside."""
@@ -158,7 +153,7 @@ class TabulatedLaw(ContactLaw):
                 f"to {p.max():.4g} Pa"
             )
         x = np.log(np.clip(p, first, last))
-        values = {n: np.exp(c(x)) if positive else np.asarray(c(x)) for n, (positive, c) in self._curves.items()}
+        values = {name: curve(x) for name, curve in self._curves.items()}
         reasons = {}
         if "area" in values:
             reasons["real area above 0.3 of the nominal area"] = values["area"] > 0.3

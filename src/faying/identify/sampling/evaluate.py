@@ -110,7 +110,9 @@ class Evaluator:
         lossless = not any(law.predicts_loss for law in laws)
         nothing = np.full((ensemble.loads, model.count), np.nan)
         loss = nothing if lossless else loss
-        order = self._followed(found, model.matrices[2])
+        # the mode that has the shape of each mode of the median, or the next one left
+        pairs = zip(self.median or found, found, strict=True)
+        order = np.stack([follow(a.shapes, b.shapes, model.matrices[2], a.frequencies) for a, b in pairs])
         return {
             "frequencies": np.take_along_axis(frequencies, order, axis=1),
             "loss_factors": np.take_along_axis(loss, order, axis=1),
@@ -121,12 +123,6 @@ class Evaluator:
             "open_share": np.array([share for share, _ in shares]),
             "above_range_share": np.array([share for _, share in shares]),
         }
-
-    def _followed(self, found: Sequence[Variant], mass: Array) -> Index:
-        """Which mode (load, m) of a sample has the shape of each mode of the median, or the next one left."""
-        before = self.median or found
-        pairs = zip(before, found, strict=True)
-        return np.stack([follow(one.shapes, other.shapes, mass, one.frequencies) for one, other in pairs])
 
     def _modes(self, model: ReducedModel, found: Sequence[Variant], names: Index) -> Array:
         """Names (t,) of the modes that this sample pairs with the test's, -1 where one has no partner."""

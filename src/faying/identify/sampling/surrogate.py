@@ -71,7 +71,8 @@ class Surrogate:
             raise InputError(f"output {int(known.sum(axis=0).argmin()) + 1} has an answer at fewer than 2 points")
         sets = _term_sets(x.shape[1], degree, int(POINTS_PER_COEFFICIENT**-1 * known.sum(axis=0).max(initial=2)))
         terms = np.unique(np.concatenate(sets), axis=0)
-        where = [_rows(terms, chosen) for chosen in sets]
+        place = {term.tobytes(): k for k, term in enumerate(terms)}
+        where = [np.array([place[term.tobytes()] for term in chosen]) for chosen in sets]
         columns = _columns(_values(x, limited, int(terms.max())), terms)
         coefficients = np.zeros((len(terms), y.shape[1]))
         error = np.full(y.shape[1], np.inf)
@@ -135,12 +136,6 @@ def _terms(inputs: int, degree: int, flatness: float, most: int) -> Index | None
                 if len(found) > max(most, 1):
                     return None
     return np.array(found, dtype=np.int64)
-
-
-def _rows(terms: Index, chosen: Index) -> Index:
-    """Where each of the chosen terms stands."""
-    place = {term.tobytes(): k for k, term in enumerate(terms)}
-    return np.array([place[term.tobytes()] for term in chosen])
 
 
 def _patterns(known: Mask) -> list[tuple[Mask, Index]]:

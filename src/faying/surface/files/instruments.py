@@ -116,7 +116,9 @@ def _opened(file: Path, library: Any, kind: str | None) -> _Content:
         with library.open_topography(str(file), format=kind) as reader:
             channel = reader.default_channel
             stated = channel.physical_sizes is not None
-            _check_size(file, channel.nb_grid_pts)
+            points = channel.nb_grid_pts
+            if points is not None and len(points) > 0:
+                check_points(str(file), float(np.prod([float(n) for n in points])))
             topography = channel.topography(**({} if stated else {"physical_sizes": channel.nb_grid_pts}))
             heights: Any = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan)
             return _Content(
@@ -137,12 +139,6 @@ def _packed(file: Path) -> str:
         return ""
     shown = few(names, 3)
     return f"; it is a zip archive of {len(names)} files ({shown}): unpack it and give one of them"
-
-
-def _check_size(file: Path, points: Any) -> None:
-    """Raise ReadError where the points that a file announces do not fit into memory."""
-    if points is not None and len(points) > 0:
-        check_points(str(file), float(np.prod([float(n) for n in points])))
 
 
 def _scan(file: Path, content: _Content, xy: float, z: float) -> Scan | Profile:

@@ -139,7 +139,8 @@ def read(path: Path) -> Scan | Profile:
             step = _number(root, path, "Record1", "Axes", "CZ", "Increment", default=1.0) or 1.0
         z = heights.astype(float) * step + offset
         z[missing | ~np.isfinite(z)] = np.nan
-    instrument = Instrument(name=_name(root))
+    makers = [_text(root, "Record2", "Instrument", part) for part in ("Manufacturer", "Model")]
+    instrument = Instrument(name=" ".join(filter(None, makers)))
     spacing = [_spacing(root, path, axis) for axis in ("CX", "CY")[: 1 if kind == "PRF" else 2]]
     try:
         if kind == "PRF":
@@ -149,11 +150,6 @@ def read(path: Path) -> Scan | Profile:
         raise
     except InputError as fault:
         raise ReadError(f"{path}: {fault}") from fault
-
-
-def _name(root: ElementTree.Element) -> str:
-    parts = [_text(root, "Record2", "Instrument", part) or "" for part in ("Manufacturer", "Model")]
-    return " ".join(part for part in parts if part)
 
 
 def _spacing(root: ElementTree.Element, path: Path, axis: str) -> float:
@@ -179,7 +175,9 @@ def _heights(archive: zipfile.ZipFile, root: ElementTree.Element, path: Path) ->
     missing = np.zeros((ny, nx), bool)
     if link:
         blob = _member(archive, link, LARGEST_HEIGHTS, path)
-        _checksum(blob, _text(root, "Record3", "DataLink", "MD5ChecksumPointData"), link, path)
+        stated = _text(root, "Record3", "DataLink", "MD5ChecksumPointData")
+        if stated and hashlib.md5(blob, usedforsecurity=False).hexdigest().lower() != stated.lower():
+            raise ReadError(f"{path}: the checksum of {link} does not match; the file is damaged, export it again")
         if len(blob) != nx * ny * kind.itemsize:
             raise ReadError(
                 f"{path}: {link} has {len(blob)} bytes where {nx} x {ny} heights of {kind.itemsize} bytes are due; "
@@ -206,11 +204,6 @@ def _heights(archive: zipfile.ZipFile, root: ElementTree.Element, path: Path) ->
     except ValueError as fault:
         raise ReadError(f"{path}: a height listed in main.xml is not a number ({fault})") from None
     return np.array(listed).reshape(ny, nx), missing
-
-
-def _checksum(blob: bytes, stated: str | None, name: str, path: Path) -> None:
-    if stated and hashlib.md5(blob, usedforsecurity=False).hexdigest().lower() != stated.lower():
-        raise ReadError(f"{path}: the checksum of {name} does not match; the file is damaged, export it again")
 
 
 def write(scan: Scan | Profile, path: Path, *, precision: str = "F") -> None:
