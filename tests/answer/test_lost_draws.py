@@ -75,3 +75,20 @@ def test_a_law_that_has_no_answer_leaves_the_waves(study, complete, monkeypatch)
     assert set(complete.interval_sources) - set(found.interval_sources) == {"law"}
     assert found.wave_frequencies == pytest.approx(complete.wave_frequencies, rel=5e-4)
     assert any("do not contain law, which found no answer" in note.text for note in found.notes)
+
+
+def test_a_lost_first_draw_leaves_the_law(study, complete, monkeypatch):
+    first: list[np.ndarray] = []
+
+    def of_the_first(variant):
+        gap, own = variant.gaps[0], variant.laws[0]
+        if np.ptp(gap) > 0 and not first:
+            first.append(gap)
+        plain = own.scale == 1.0 and not isinstance(own.tangential, float)
+        return bool(first) and plain and np.array_equal(gap, first[0])
+
+    without(monkeypatch, of_the_first)
+    found = faying.run(study)
+    assert found.interval_sources == complete.interval_sources
+    # a draw is worth its distance from the others
+    assert found.interval_best == pytest.approx(complete.interval_best, rel=0.3)

@@ -106,3 +106,22 @@ def test_a_joint_that_is_listed_leaves_the_others_as_assumed(tmp_path):
     one = listed(f'joint."{joint.name}".stiffness = "0.5 to 2"', tmp_path).uncertain
     found = {one.key for one in with_assumed(replace(two, uncertain=one)).inputs}
     assert found == common - {"joint.stiffness"} | {f"joint.{joint.name}.stiffness", "joint.other.stiffness"}
+
+
+def test_a_preload_that_is_listed_has_no_factor_as_well(tmp_path):
+    path = tmp_path / "study.toml"
+    text = (
+        (BLOCKS / "study.toml")
+        .read_text(encoding="utf-8")
+        .replace('"model.inp"', f'"{(BLOCKS / "model.inp").as_posix()}"')
+    )
+    path.write_text(text.replace('preload = ["1 kN", "3 kN"]', 'preload = "3 kN +- 0.1 kN"'), encoding="utf-8")
+    found = keys(Study.read(path))
+    assert any(key.endswith(".preload") for key in found)
+    assert not any(key.endswith(".factor") for key in found)
+
+
+def test_seats_of_solid_bolts_have_no_waves_that_nobody_gives():
+    study = Study.read(ROOT / "examples" / "solid-bolt" / "study.toml")
+    wavy = {key.split(".")[1] for key in keys(study) if "waviness" in key}
+    assert wavy < {joint.name for joint in study.joints}

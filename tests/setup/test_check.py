@@ -456,12 +456,3 @@ def test_more_memory_than_there_is_comes_with_the_size_that_fits(folder, monkeyp
     again, _ = looked(folder, ('size = "5 mm"', f'size = "{size}"'))
     assert not again.faults
     assert again.expected.memory < need / 2
-
-
-def test_a_selector_of_a_force_that_fits_many_faces_is_a_fault_where_it_stands(folder):
-    path = folder / "loaded.toml"
-    lines = '[[load]]\nname = "pull"\n[[load.force]]\nface = { part = "upper" }\nforce = ["0 N", "0 N", "9 N"]\n'
-    path.write_text((folder / "study.toml").read_text() + "\n" + lines)
-    (fault,) = [one for one in check(path, mesh=False).faults if one.code == "selector"]
-    assert "faces fit part = 'upper'" in fault.text
-    assert path.read_text().splitlines()[fault.line - 1].startswith(("face = ", "[[load.force]]"))

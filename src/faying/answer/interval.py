@@ -12,7 +12,7 @@ from faying.case.ends import quantiles, ratios_of
 from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
 from faying.case.part_tests import KnownParts
-from faying.case.scatter import ENDS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
+from faying.case.scatter import LEVELS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
 from faying.case.solve import LoadedCase
 from faying.errors import NotConverged
 from faying.joint.joint_law import JointLaw
@@ -60,22 +60,23 @@ def intervals(
     known = [] if parts is None else list(parts.notes())
     if not case.structure.joints or not can_change(case):
         text = (
-            "the intervals do not contain law, k_t/k_n and waves, which are found for bolts pulled at once, springs "
-            "per area and hysteretic damping"
+            f"the intervals do not contain law, k_t/k_n, {'preload ' * (len(case.loads) == 1)}and waves, which are "
+            "found for bolts pulled at once, springs per area and hysteretic damping"
         )
-        lost = [Note(code=INCOMPLETE, text=text)] if case.structure.joints else []
+        lost = [Note(code=INCOMPLETE, text=text), *law_notes(case)] if case.structure.joints else []
         return None, _combined(case, states, mesh, parts, Joints()), [*lost, *known]
     draws = Draws.of(case)
     plain = ChangedCase.nothing(case)
     waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
-    middle = replace(waves[0] if waves else plain, laws=_laws(case))
+    middle = replace(waves[0] if waves else plain, laws=_laws(case), factor=_preload_factors(case)[1])
     ends = _ends(case, middle)
     found = frequencies_of(case, states, [*waves, middle], ends=[one for pair in ends.values() for one in pair])
     of_waves, about, rest = found[: len(waves)], found[len(waves)], iter(found[len(waves) + 1 :])
     pairs = {name: (next(rest), next(rest)) for name in ends}
     band = draws.band(states, of_waves)
     of_joints = Joints(band=band, drawn=of_waves[0] if waves else None, about=about, pairs=pairs)
-    lost = [*_incomplete({"draws of waves": of_waves, "the medians of law and k_t/k_n": [about], **pairs})]
+    of_about = f"{', '.join(pairs)} and their medians"
+    lost = [*_incomplete({"draws of waves": of_waves, of_about: [about], **pairs})]
     return band, _combined(case, states, mesh, parts, of_joints), [*lost, *known, *draws.notes(case), *law_notes(case)]
 
 
@@ -100,7 +101,7 @@ def _ends(case: Case, middle: ChangedCase) -> dict[str, tuple[ChangedCase, Chang
     if any(low < high for low, _, high in (ratios_of(case, joint) for joint in case.structure.joints)):
         out["k_t/k_n"] = replace(middle, laws=_laws(case, ratio=0)), replace(middle, laws=_laws(case, ratio=2))
     if len(case.loads) == 1:
-        low, high = _preload_factors(case)
+        low, _, high = _preload_factors(case)
         out["preload"] = replace(middle, factor=low), replace(middle, factor=high)
     return out
 
@@ -160,14 +161,16 @@ def _combined(
     """The interval of each frequency, by what each thing moves ln f (loads, m) from the best estimate."""
     f = np.stack([state.damped.frequencies for state in states])
     found, moved, middle, about = {}, np.zeros(f.shape), np.zeros(f.shape), joints.about
-    if isinstance(about, np.ndarray) and not isinstance(joints.drawn, NotConverged):
-        middle += np.log(about / (f if joints.drawn is None else joints.drawn))
+    drawn = f if joints.drawn is None else joints.drawn
+    if isinstance(about, np.ndarray):
+        # of a draw that has no answer itself it is not known how far the others lie from it
+        middle += np.log(about / (f if isinstance(drawn, NotConverged) else drawn))
         for name, (low, high) in joints.pairs.items():
             if isinstance(low, np.ndarray) and isinstance(high, np.ndarray):
                 found[name] = np.log(np.stack([low, high]) / about)
     if joints.band is not None:
         logs = np.log(joints.band.frequencies / f)
-        middle += logs.mean(axis=0)
+        middle += 0.0 if isinstance(drawn, NotConverged) else logs.mean(axis=0)
         found["waves"] = SCORE * logs.std(axis=0, ddof=1) * ONE_EACH_WAY
     if all(state.ends and "scan" in state.ends for state in states):
         found["scan"] = np.log(np.stack([(state.ends or {})["scan"] for state in states], axis=1) / f)
@@ -184,20 +187,26 @@ def _combined(
     return Interval.about(f * np.exp(middle + moved), named, moved)
 
 
-def _preload_factors(case: Case) -> tuple[float, float]:
-    """5 and 95 % of a common factor on the preload of all bolts."""
+def _preload_factors(case: Case) -> tuple[float, float, float]:
+    """5, 50 and 95 % of a common factor on the preload of all bolts; of several that are listed the widest ends."""
     known = stated(case.study.uncertain)
-    own = [one for key, one in known.items() if key.startswith("bolt.") and key.endswith(".factor")]
-    both = np.stack([one.quantile(ENDS) for one in own or [default("preload")]])
-    return float(both[:, 0].min()), float(both[:, 1].max())
+    own = [one.quantile(LEVELS) for key, one in known.items() if key.startswith("bolt.") and key.endswith(".factor")]
+    # a preload that scatters has its median in the study
+    own += [
+        one.quantile(LEVELS) / one.median
+        for key, one in known.items()
+        if key.startswith("bolt.") and key.endswith(".preload")
+    ]
+    ends = np.stack(own or [default("preload").quantile(LEVELS)])
+    return float(ends[:, 0].min()), float(np.median(ends[:, 1])), float(ends[:, 2].max())
 
 
-def _by_preload(loads: Array, frequencies: Array, factors: tuple[float, float]) -> Array:
-    """Offsets of ln f (2, loads, m) under other preloads: linear in ln F between the loads, and on beyond them."""
+def _by_preload(loads: Array, frequencies: Array, factors: tuple[float, float, float]) -> Array:
+    """Offsets of ln f (2, loads, m) by both ends from the median: linear in ln F between loads and beyond them."""
     x, y = np.log(loads), np.log(frequencies)
     out = []
-    for factor in factors:
-        at = x + np.log(factor)
+    for end in (0, 2):
+        at = x + np.log(factors[end] / factors[1])
         right = np.clip(np.searchsorted(x, at), 1, len(x) - 1)
         share = (at - x[right - 1]) / (x[right] - x[right - 1])
         out.append((1 - share)[:, None] * y[right - 1] + share[:, None] * y[right] - y)

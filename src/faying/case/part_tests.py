@@ -33,6 +33,7 @@ from faying.study.keys.material import PartTestChoice
 from faying.typing import Array, Index
 
 BALANCE_SD = 1e-3  # of ln of a weighed mass: a balance of 0.1 %, and what hangs on the part
+PART_SD = 0.01  # of ln f of each mode of one free part before its test: a bronze disc has 1.3 %
 LEAST_SD = 3e-3  # of ln f of each mode: sensors and cables, and how far a part is from its drawing
 FARTHEST = 4.0  # standard deviations beyond which a measured frequency is that of another mode
 MODES_EACH, SPARE_MODES = 2, 10  # of the model for each measured one, and in all: a test misses what it does not excite
@@ -176,7 +177,7 @@ class KnownParts:
             return None
         tests = study.part_tests.items()
         parts = tuple(PartAlone(name=name, structure=structure.alone(name), test=test) for name, test in tests)
-        priors = structure_sd(study.uncertain), mode_sd(study.uncertain)
+        priors = structure_sd(study.uncertain), min(mode_sd(study.uncertain), PART_SD)
         energies = [energy_shares(case, parts, state) for state in states]
         strain, kinetic, others = (np.stack(one) for one in zip(*energies, strict=True))
         return cls(

@@ -8,6 +8,7 @@ from typing import final
 import numpy as np
 
 from faying.bolt.tightening import TIGHTENING
+from faying.case.case import part_of
 from faying.case.law_range import of_joints
 from faying.distribution import Distribution
 from faying.form.machining import ASSUMED
@@ -151,14 +152,21 @@ def with_assumed(study: Study) -> UncertainChoice:
     if given.only:
         return given
     listed = [number_of(one.key) for one in given.inputs]
+    seats = {bolt.part for bolt in study.bolts if bolt.part is not None}
+    plain = {joint.name for joint in study.joints if not seats & {part_of(study, face) for face in joint.faces}}
     more: list[Input] = []
     for one in assumed(study).inputs:
         number = number_of(one.key)
-        owners = {other.owner for other in listed if (other.room, other.name) == (number.room, number.name)}
+        alike = ("factor", "preload") if number.room == "bolt" else (number.name,)
+        owners = {other.owner for other in listed if other.room == number.room and other.name in alike}
+        if number.name == "stiffness" and given.models:  # laws are drawn themselves
+            continue
+        if "waviness" in number.name and number.owner not in plain:  # seats of solid bolts have none in a run
+            continue
         if number.owner is None and owners and None not in owners:  # listed for some joints: the others have their own
             rest = [joint.name for joint in study.joints if joint.name not in owners]
             more += [replace(one, key=f"{number.room}.{name}.{number.name}") for name in rest]
-        elif not owners & {None, number.owner} and not (given.models and number.name == "stiffness"):
+        elif not owners & {None, number.owner}:
             more.append(one)
     return replace(given, inputs=(*given.inputs, *more))
 

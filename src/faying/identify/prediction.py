@@ -260,6 +260,8 @@ class Prediction(Recorded):
         seen = self.observed[0][:, -1]
         inputs, columns = self.inputs, self.columns
         numeric = len(columns) - bool(inputs.models)
+        if not numeric:
+            raise InputError("only draws of waves or laws scatter, whose shares no polynomial has")
         needed = 2 * (numeric + 1)
         answers = np.isfinite(seen[self.sound]).sum(axis=0)
         modes = np.flatnonzero(answers >= needed)

@@ -22,7 +22,7 @@ from faying.typing import Array, Index, Mask
 
 Step = tuple[Array, int]  # of Newton's iteration, and how many inner steps it took
 
-FAR = 10.0  # imbalance over the load from which a start is drawn back
+DRAWN_BACK_FROM = 10.0  # imbalance over the load from which a start is drawn back
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
 FORCING_TERM = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 FIX_FRICTION_BELOW = 1e-4  # imbalance below which k_t and the limit of friction are kept
@@ -180,10 +180,13 @@ class Equilibrium(ABC):
         """
         with np.errstate(over="ignore", invalid="ignore"):
             size = np.linalg.norm(self._out_of_balance(u, load, self._stick_slip(u)))
-            if size <= FAR * np.linalg.norm(load) or u @ load <= 0:  # or the way does not lead down from rest
+            if size <= DRAWN_BACK_FROM * np.linalg.norm(load):
                 return u
             rest = np.zeros_like(u)
-            return self._line_search(rest, u, load, self._stick_slip(rest))
+            try:
+                return self._line_search(rest, u, load, self._stick_slip(rest))
+            except NotConverged:  # the way does not lead down from rest
+                return u
 
     def _preload_state(self, newton: "Newton", u: Array, slip_states: list[StickSlip]) -> PreloadState:
         """The state that a load has led to; shear that slipped is carried to the next."""

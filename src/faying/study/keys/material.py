@@ -55,8 +55,10 @@ def read_parts(top: Table, materials: Mapping[str, Material]) -> tuple[dict[str,
     tests: dict[str, PartTestChoice] = {}
     for name, table in top.named("part").items():
         test = PartTestChoice(**{key: table.get(key) for key in ("mass", "frequencies", "file", "quantity")})
-        if test != PartTestChoice():
+        if test.mass is not None or test.frequencies or test.file is not None:
             tests[name] = test
+        elif test.quantity is not None:
+            top.faults.add(f"part.{name} has quantity, which is of the FRFs in file; give file, or leave it out")
         if test.frequencies and test.file:
             top.faults.add(f"part.{name} has both file and frequencies; give one of them")
         material = table.get("material")
