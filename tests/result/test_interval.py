@@ -1,5 +1,6 @@
 """The interval of a frequency from what is not known, and the score against a test."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -109,3 +110,20 @@ def test_no_score_without_a_test():
     assert Score.of(nothing) is None
     nothing.comparison = None
     assert Score.of(nothing) is None
+
+
+def test_bars_of_a_comparison_are_the_intervals_wherever_the_points_lie():
+    """A frequency as modelled may lie outside its own interval; a bar does not reach to it."""
+    from matplotlib.figure import Figure
+
+    from faying.result.figure import comparison
+    from tests.helpers.figures import result
+
+    found = result()
+    shifted = replace(found, interval_low=1.05 * found.frequencies, interval_high=1.1 * found.frequencies)
+    ax = comparison(Figure().subplots(), shifted)
+    c = shifted.comparison
+    for row, bars in enumerate(ax.collections):
+        ends = np.array([segment[:, 1] for segment in bars.get_segments()])
+        own = shifted.frequencies[row, c.modes[row]] / c.frequencies[row]
+        assert ends == pytest.approx(100 * (np.outer(own, [1.05, 1.1]) - 1))

@@ -27,9 +27,10 @@ def differences(found: RunDifference, names: tuple[str, str] = ("first run", "se
         shift = (side - 0.5) * 0.24
         look = {"color": colour(side), "ms": 4, "ls": "none", "label": name}
         f = found.frequencies[side]
-        axes[0].errorbar(
-            places + shift, 100 * (f / base - 1), yerr=_interval(found, side, base), fmt=MARKS[side], lw=1.0, **look
-        )
+        axes[0].plot(places + shift, 100 * (f / base - 1), MARKS[side], **look)
+        ends = _interval(found, side, base)
+        if ends is not None:
+            axes[0].vlines(places + shift, *ends, color=colour(side), lw=1.0)
         axes[1].plot(places + shift, found.loss_factors[side], MARKS[side], **look)
         run = (found.first, found.second)[side]
         pressure, share = carried(run, found.loads[side])
@@ -64,10 +65,9 @@ def carried(result: Result, load: int) -> tuple[Array, Array]:
 
 
 def _interval(found: RunDifference, side: int, base: Array) -> Array | None:
-    """(2, pair) how far the interval reaches below and above each frequency [% of the first]; None without."""
+    """Where 5 and 95 % of each frequency lie (2, pair) [% from the first]; None without."""
     run, load, modes = (found.first, found.second)[side], found.loads[side], found.modes[:, side]
     if run.interval_low is None or run.interval_high is None:
         return None
-    f = found.frequencies[side]
-    ends = np.stack([f - run.interval_low[load][modes], run.interval_high[load][modes] - f])
-    return np.asarray(100 * np.maximum(ends, 0.0) / base)
+    ends = np.stack([run.interval_low[load][modes], run.interval_high[load][modes]])
+    return np.asarray(100 * (ends / base - 1))

@@ -202,7 +202,7 @@ def band(ax: Any, x: Any, low: Any, high: Any, *, label: str) -> None:
 def comparison(ax: Any, result: RunRecord) -> Any:
     """Draw the difference of study and published model from the test, one mark a mode and load.
 
-    A bar is 5 to 95 % of the study about its own frequency.
+    A bar is 5 to 95 %; the frequency as modelled may lie outside.
     """
     c = result.comparison
     if c is None:
@@ -213,17 +213,10 @@ def comparison(ax: Any, result: RunRecord) -> Any:
     for row, load in enumerate(result.loads):
         place = modes + (row - (len(result.loads) - 1) / 2) * 0.62 / len(result.loads)
         error = 100 * (c.predicted[row] / c.frequencies[row] - 1)
-        ax.errorbar(
-            place,
-            error,
-            yerr=_ends(result, row),
-            fmt="o",
-            ms=4,
-            color=shades[row],
-            elinewidth=2.0,
-            capsize=0,
-            label=f"computed, {load_text(load)}",
-        )
+        ax.plot(place, error, "o", ms=4, color=shades[row], label=f"computed, {load_text(load)}")
+        ends = _ends(result, row)
+        if ends is not None:
+            ax.vlines(place, *ends, color=shades[row], lw=2.0)
         if c.published is not None:
             theirs = 100 * (c.published[row] / c.frequencies[row] - 1)
             ax.plot(place, theirs, "x", ms=5, color=shades[row], label=f"{plain(c.published_name)}, {load_text(load)}")
@@ -236,14 +229,13 @@ def comparison(ax: Any, result: RunRecord) -> Any:
 
 
 def _ends(result: RunRecord, row: int) -> Any:
-    """How far 5 and 95 % lie from the study's frequencies, in % of the test (2, test mode); None without intervals."""
+    """Where 5 and 95 % lie, in % from the test (2, test mode); None without intervals."""
     c = result.comparison
     if c is None or result.interval_low is None or result.interval_high is None:
         return None
     modes = np.maximum(c.modes[row], 0)
-    low = c.predicted[row] - result.interval_low[row, modes]
-    high = result.interval_high[row, modes] - c.predicted[row]
-    return np.clip(np.nan_to_num(100 * np.stack([low, high]) / c.frequencies[row]), 0, None)
+    ends = np.stack([result.interval_low[row, modes], result.interval_high[row, modes]])
+    return np.where(c.modes[row] < 0, np.nan, 100 * (ends / c.frequencies[row] - 1))
 
 
 @drawing
