@@ -1,7 +1,7 @@
 """Frequencies at both ends of what is not known of a joint and changes no pressure."""
 
-from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from faying.distribution import Distribution
 from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
 from faying.joint.joint import FittedJoint
-from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
 from faying.numerics.modes import Modes
 from faying.typing import Array
@@ -28,18 +27,13 @@ def ends_of(case: Case, preload: PreloadState, engine: Engine, modes: Modes) -> 
     """
     joints, out = case.structure.joints, {}
 
-    def pair(laws: Sequence[tuple[JointLaw, JointLaw]]) -> Pair:
-        both = []
-        for k in (0, 1):
-            changed = case.structure.with_joints(laws=[pair[k] for pair in laws])
-            both.append(engine.frequencies(changed.springs(preload.pressures), modes, one_way=True))
-        return both[0], both[1]
+    def at(end: Literal["low", "high"]) -> Array:
+        laws = [replace(joint.law, end=end) if joint.law.has_range else joint.law for joint in joints]
+        springs = case.structure.with_joints(laws=laws).springs(preload.pressures)
+        return engine.frequencies(springs, modes, one_way=True)
 
-    laws = [joint.law for joint in joints]
-    if any(law.has_range for law in laws):
-        out["scan"] = pair(
-            [(replace(law, end="low"), replace(law, end="high")) if law.has_range else (law, law) for law in laws]
-        )
+    if any(joint.law.has_range for joint in joints):
+        out["scan"] = at("low"), at("high")
     if case.study.modes.intervals and not any(joint.per_node for joint in joints):
         springs = case.structure.springs(preload.pressures)
         out["contact"] = (

@@ -152,16 +152,12 @@ def with_assumed(study: Study) -> UncertainChoice:
     if given.only:
         return given
     listed = [number_of(one.key) for one in given.inputs]
-    seats = {bolt.part for bolt in study.bolts if bolt.part is not None}
-    plain = {joint.name for joint in study.joints if not seats & {part_of(study, face) for face in joint.faces}}
     more: list[Input] = []
     for one in assumed(study).inputs:
         number = number_of(one.key)
         alike = ("factor", "preload") if number.room == "bolt" else (number.name,)
         owners = {other.owner for other in listed if other.room == number.room and other.name in alike}
         if number.name == "stiffness" and given.models:  # laws are drawn themselves
-            continue
-        if "waviness" in number.name and number.owner not in plain:  # seats of solid bolts have none in a run
             continue
         if number.owner is None and owners and None not in owners:  # listed for some joints: the others have their own
             rest = [joint.name for joint in study.joints if joint.name not in owners]
@@ -181,7 +177,10 @@ def assumed(study: Study) -> UncertainChoice:
         found["joint.tangential"] = default("k_t/k_n").within(0.01, 2.0, "()")[0]
     for bolt in study.bolts:
         found[f"bolt.{bolt.name}.factor"] = default("preload")
+    solid = {bolt.part for bolt in study.bolts if bolt.part is not None}
     for joint in study.joints:
+        if solid & {part_of(study, face) for face in joint.faces}:  # seats of solid bolts have no waves in a run
+            continue
         key = f"joint.{joint.name}.form.waviness"
         if joint.form is None and ASSUMED.Wq is not None:
             found[key] = Distribution(kind="lognormal", centre=ASSUMED.Wq, spread=0.4)
