@@ -216,32 +216,24 @@ def test_open_points_lose_nothing_however_many_there_are():
         assert np.all(springs[p == 0] * n[p == 0] == 0)
 
 
-def test_places_in_a_table_are_those_of_a_search():
-    """Equal and unequal grids, values at, between and beside grid points; a grid too uneven is searched."""
-    from faying.joint.pressure_curve import cells, equal_steps
-
-    rng = np.random.default_rng(3)
-    even, uneven = np.linspace(0.0, 21.0, 2000), np.cumsum(rng.uniform(0.001, 0.03, 2000)) - 4.0
-    coarse = np.array([0.0, 1e-9, 1.0, 5.0])
-    for grid in (even, uneven, coarse):
-        values = np.concatenate([grid, rng.uniform(grid[0], grid[-1], 5000), (grid[1:] + grid[:-1]) / 2])
-        wanted = np.clip(np.searchsorted(grid, values, side="right") - 1, 0, len(grid) - 2)
-        found = cells(grid, values, *equal_steps(grid))
-        apart = found != wanted  # rounding may put a grid point in the cell before it, where the answer is the same
-        assert np.all(np.isclose(values[apart], grid[np.maximum(found, wanted)[apart]], rtol=0, atol=1e-12))
-        assert np.abs(found - wanted).max() <= 1
-    assert equal_steps(coarse)[1] == 0.0
+def test_stiffness_between_the_pressures_of_the_table_is_that_of_the_law():
+    """Linear in ln p at 1 % of p: what the law bends within a step is left, but for one step at each of its kinks."""
+    p = np.geomspace(10.0, 4e7, 5000)
+    k_n, k_t = JointLaw(model=LAW).stiffness(p)
+    at = LAW.at_pressure(p)
+    for found, exact in ((k_n, at.k_n), (k_t, at.k_t)):
+        assert np.quantile(np.abs(found / exact - 1), 0.99) < 1e-5
 
 
-@pytest.mark.parametrize("factor", [1.0, 0.4])
-def test_one_look_at_the_tables_gives_what_two_give(factor):
-    """Pressure, slope and k_t: apart, below the least pressure, within the law, beyond its end."""
-    law = JointLaw(model=LAW) if factor == 1 else JointLaw(model=LAW).scaled(factor)
-    end = law.approach(law.model.greatest_pressure)
-    closing = np.concatenate([[-1e-6, 0.0], np.geomspace(1e-4 * end, 3 * end, 500)])
-    p, k_n, k_t = law.contact(closing)
-    assert p == pytest.approx(law.pressure(closing)[0], rel=1e-12)
-    assert k_n == pytest.approx(law.pressure(closing)[1], rel=1e-12)
-    assert k_t == pytest.approx(law.stiffness(p)[1], rel=1e-9)
-    few = law.contact(closing[::10])  # exactly, as few points are
-    assert few[2] == pytest.approx(law.stiffness(law.pressure(closing[::10])[0])[1])
+@pytest.mark.parametrize("count", [3, 500])
+def test_a_scaled_law_with_another_ratio_or_end_has_tables_of_its_own(count):
+    """k_t = 0.4 k_n and the low end of a stated range, after a factor on the stiffness was put on."""
+    given = {"k_n": lambda p: 1e9 * p**0.5, "k_t": lambda p: 8e8 * p**0.5, "k_n_low": lambda p: 6e8 * p**0.5}
+    law = JointLaw(model=Given(**given, k_n_high=lambda p: 2e9 * p**0.5)).scaled(0.5)
+    p = np.geomspace(1e3, 1e7, count)
+    assert law.stiffness(p)[0] == pytest.approx(5e8 * p**0.5)
+    k_n, k_t = replace(law, tangential=0.4).stiffness(p)
+    assert k_t == pytest.approx(0.4 * k_n)
+    low = replace(law, end="low")
+    assert low.stiffness(p)[0] == pytest.approx(3e8 * p**0.5)
+    assert low.pressure(np.array([low.approach(1e6)]))[1][0] == pytest.approx(3e8 * 1e3, rel=1e-6)

@@ -179,12 +179,7 @@ class VariantBuilder:
         law = point.study.law_of(joint)
         made = self._made.get((number, law, surface), lambda: MadeLaw(law.make(surface, rough, other)))
 
-        def tabulated(law: JointLaw) -> JointLaw:
-            # asked hundreds of times, so that its table pays however few points the joint has
-            asked = replace(law, few=0)
-            return self._laid.get((made, asked), lambda: asked)
-
-        return joint.laid(made.chosen, rough.nu, tabulated)
+        return joint.laid(made.chosen, rough.nu, lambda law: self._laid.get((made, law), lambda: law))
 
     def model_at(self, model: ReducedModel, index: int) -> ReducedModel:
         """A model of the structure with the gaps and the scales of one point."""
@@ -205,7 +200,6 @@ class VariantBuilder:
         """
         point = self._point(index)
         laws, forces, friction = self.laws(index)
-        laws = [replace(law, few=JointLaw.few) for law in laws]  # inverted as a run inverts them
         materials = structure.materials
         if point.scales:
             materials = materials_of(point.study, structure.mesh)
