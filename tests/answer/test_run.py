@@ -198,24 +198,6 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     assert state.modes.frequencies[elastic] == pytest.approx(exact.frequencies[elastic], rel=5e-9)
 
 
-def test_preloads_found_together_are_those_found_one_by_one(study, monkeypatch):
-    from faying.joint import shared_modes as module
-    from faying.joint.shared_modes import Preloads
-    from faying.joint.support_check import checked_preload
-
-    case = Case.of(study)
-    problem = case.structure.assembly()
-    wanted = [checked_preload(case.structure, problem, case.study.preloads[k]) for k in range(2)]
-    together = Preloads(case.modal, case.study.preloads)
-    monkeypatch.setattr(module, "AT_ONCE", case.structure.mesh.unknowns)  # room for one of them
-    apart = Preloads(case.modal, case.study.preloads)
-    for number, state in enumerate(wanted):
-        for preloads in (together, apart):
-            found = preloads.at(number)
-            assert found.bolt_forces == state.bolt_forces
-            assert found.pressures[0] == pytest.approx(state.pressures[0], abs=1e-7 * state.pressures[0].max())
-
-
 @pytest.mark.parametrize(
     "factor", [2.0, pytest.param(30.0, marks=pytest.mark.slow), pytest.param(3000.0, marks=pytest.mark.slow)]
 )

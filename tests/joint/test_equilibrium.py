@@ -28,13 +28,13 @@ class Dense(Equilibrium):
         start[::3] = -1e-6
         return start
 
-    def _direction(self, wanted):
+    def _direction(self, u, force, slip_states, accuracy):
         matrix = np.array(self.stiffness)
-        for trace, k_n, k_t in self._tangents(wanted.u, wanted.slip_states):
+        for trace, k_n, k_t in self._tangents(u, slip_states):
             for i in range(len(trace.weights)):
                 matrix[3 * i, 3 * i] += k_n[i]
                 matrix[3 * i + 1 : 3 * i + 3, 3 * i + 1 : 3 * i + 3] += k_t[i]
-        return np.linalg.solve(matrix, wanted.force), 1
+        return np.linalg.solve(matrix, force), 1
 
 
 def law(**changes):

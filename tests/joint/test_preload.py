@@ -4,7 +4,6 @@ import pytest
 import faying
 from faying.fe.faces import face_centre
 from faying.fe.interface import join
-from faying.joint import preload as module
 from faying.joint.equilibrium import Equilibrium
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
@@ -264,81 +263,3 @@ def test_where_the_corners_find_no_equilibrium_the_joint_begins_evenly(fault, mo
     found = problem.solve(face_pair(structure, 4e3))
     assert problem.factorised_springs is None
     assert found.pressures[0] == pytest.approx(wanted.pressures[0], abs=1e-8 * wanted.pressures[0].max())
-
-
-class Counted:
-    """A factorisation that counts how often it is read."""
-
-    def __init__(self, factor):
-        self._factor, self.read = factor, 0
-        self.name, self.memory = factor.name, factor.memory
-
-    def solve(self, right):
-        self.read += 1
-        return self._factor.solve(right)
-
-
-LOADS = (2e3, 4e3, 8e3)
-
-
-def counting(structure, monkeypatch):
-    """Factorisations of all unknowns from here on, as Counted."""
-    made, factorise = [], module.factorise_roughly
-
-    def counted(matrix, **options):
-        factor = factorise(matrix, **options)
-        if matrix.shape[0] < structure.mesh.unknowns:
-            return factor
-        made.append(Counted(factor))
-        return made[-1]
-
-    monkeypatch.setattr(module, "factorise_roughly", counted)
-    return made
-
-
-@pytest.mark.parametrize("corners", [True, False])
-def test_loads_together_lead_where_they_lead_one_by_one(corners, monkeypatch):
-    structure = bars(material=STEEL)
-    alone, together = structure.assembly(), structure.assembly()
-    if not corners:
-        alone.vertices = together.vertices = None
-    made = counting(structure, monkeypatch)
-    wanted = [alone.solve(face_pair(structure, load), tolerance=1e-9) for load in LOADS]
-    one_by_one = sum(factor.read for factor in made)
-    made.clear()
-    found = together.solve_together([face_pair(structure, load) for load in LOADS], tolerance=1e-9)
-    assert sum(factor.read for factor in made) < 0.7 * one_by_one
-    assert together.factorisations == 1
-    for one, other in zip(found, wanted, strict=True):
-        assert one.pressures[0] == pytest.approx(other.pressures[0], abs=1e-7 * other.pressures[0].max())
-        assert one.displacement == pytest.approx(other.displacement, abs=1e-7 * np.abs(other.displacement).max())
-        assert one.imbalance < 1e-9
-    # one more load goes on from them
-    further = together.solve(face_pair(structure, 9e3))
-    assert structure.joints[0].interface.weights @ further.pressures[0] == pytest.approx(9e3, rel=1e-8)
-
-
-def test_a_load_that_the_shared_factorisation_does_not_reach_is_left_to_itself(monkeypatch):
-    structure = bars(material=STEEL)
-    monkeypatch.setattr(module, "AGED", 3)
-    problem = structure.assembly()
-    found = problem.solve_together([face_pair(structure, load) for load in LOADS], tolerance=1e-9)
-    assert None in found
-    assert problem.factorisations == 1
-    missing = found.index(None)
-    alone = problem.solve(face_pair(structure, LOADS[missing]), tolerance=1e-9)
-    assert structure.joints[0].interface.weights @ alone.pressures[0] == pytest.approx(LOADS[missing], rel=1e-8)
-    assert problem.factorisations > 1
-
-
-def test_loads_whose_joints_slip_or_whose_factorisation_is_of_another_law_go_one_after_another():
-    assert bars(material=STEEL).assembly().can_go_together
-    assert not bars(material=STEEL, friction=0.2).assembly().can_go_together
-    structure = bars(material=STEEL)
-    begun, taken = structure.assembly(), structure.assembly()
-    begun.solve(squeeze(structure, 1e3))
-    assert begun.can_go_together
-    taken.adopt_factor(begun.factor, begun.shift_frequency)
-    assert not taken.can_go_together
-    with pytest.raises(faying.InputError, match="the bolt forces do not balance"):
-        structure.assembly().solve_together([squeeze(structure, 1e3), np.ones(structure.mesh.unknowns)], tolerance=1e-9)

@@ -59,13 +59,6 @@ def test_maps_count_among_the_files_of_the_study(path):
     assert study.joints[0].form.first.heights == pytest.approx([0, 1e-6, 2e-6, 4e-6])
 
 
-def test_the_old_table_says_its_new_name(path):
-    text = path.read_text().replace("\n[[bolt]]", '\n[joint.gap]\nfile = "a.csv"\n\n[[bolt]]', 1)
-    path.with_name("old.toml").write_text(text)
-    with pytest.raises(faying.InputError, match=r"joint\[1\]\.gap has become joint\[1\]\.form\.gap"):
-        Study.read(path.with_name("old.toml"))
-
-
 @pytest.mark.parametrize(
     ("text", "Wq"),
     [

@@ -78,22 +78,12 @@ BOLT = {"preload": "6 kN"}
         ({"part": "upper", "touch": "lower"}, "did you mean touching"),
         ({"part": "upper", "number": 1, "all": "yes"}, "should be true or false"),
         ({"normal": "+z"}, r"joint\[1\].faces\[1\].part is missing"),
-        ({"part": "upper", "point": ["0 mm", "0 mm", "0 mm"]}, "point has become .*nearest"),
         (7, "should be a list of 2 names"),
     ],
 )
 def test_faults_of_a_selector(folder, selector, fault):
     with pytest.raises(faying.InputError, match=fault):
         study(folder, joint=[{"faces": [selector, "lower.joint"]}])
-
-
-def test_face_at_has_become_face(folder):
-    geometry = {"step": "two-blocks.step", "size": "8 mm", "face_at": {"x": {"part": "upper", "point": ["0 mm"] * 3}}}
-    with pytest.raises(faying.InputError) as fault:
-        study(folder, geometry=geometry)
-    text = str(fault.value)
-    assert "face_at has become geometry.face, with nearest in place of point" in text
-    assert "1 fault" in text
 
 
 def test_a_name_is_not_given_twice(folder):

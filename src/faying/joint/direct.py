@@ -6,7 +6,7 @@ from typing import Any, final
 import numpy as np
 
 from faying.fe.interface import Interface, Motion
-from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StepWanted, admissible, check_balance
+from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StickSlip, admissible, check_balance
 from faying.joint.joint_law import JointLaw
 from faying.joint.modal import EXACT, ModalProblem, Vibration, in_order_of
 from faying.joint.preload_case import PreloadCase
@@ -65,15 +65,15 @@ class PlainPreload(Equilibrium):
             push = push + joint.forces(offset, np.zeros((len(offset), 2)))
         return self._solved(stiffness, push)
 
-    def _direction(self, wanted: StepWanted) -> Step:
+    def _direction(self, u: Array, force: Array, slip_states: Sequence[StickSlip], accuracy: float) -> Step:
         from scipy.sparse import block_diag
 
         stiffness = self.stiffness
-        for interface, k_n, k_t in self._tangents(wanted.u, wanted.slip_states):
+        for interface, k_n, k_t in self._tangents(u, slip_states):
             local = np.zeros((len(k_n), 3, 3))
             local[:, 0, 0], local[:, 1:, 1:] = k_n, k_t
             stiffness = stiffness + interface.relative.T @ block_diag(local, format="csr") @ interface.relative
-        return self._solved(stiffness, wanted.force), 1
+        return self._solved(stiffness, force), 1
 
     def _admissible(self, force: Array) -> Array:
         return admissible(force, self._rigid, self._fixed)

@@ -8,9 +8,9 @@ matrices (`preload`) or in a small basis (`reduce`).
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -105,8 +105,7 @@ class Equilibrium(ABC):
         self._anchors = [np.zeros((len(interface.weights), 2)) for interface, _ in self.joints]
         self._past: list[tuple[float, Array]] = []  # size [N] of multiples of one load, and displacements under them
         self._pattern: Array | None = None  # that load, of size 1
-        self._known: dict[int, tuple[Array, list[tuple[Array, Array, Array]]]] = {}
-        self._at_hand = 1  # displacements whose state of the joints is kept
+        self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None  # joints where last asked
         self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
 
@@ -115,8 +114,8 @@ class Equilibrium(ABC):
         """Return a displacement to start from."""
 
     @abstractmethod
-    def _direction(self, wanted: "StepWanted") -> Step:
-        """Return the Newton step for an out-of-balance force."""
+    def _direction(self, u: Array, force: Array, slip_states: Sequence[StickSlip], accuracy: float) -> Step:
+        """Return the Newton step at a displacement for an out-of-balance force, to an accuracy relative to that [-]."""
 
     def _check_load(self, load: Array) -> None:
         """Raise InputError where no equilibrium exists under this load; by default any load will do."""
@@ -161,16 +160,59 @@ class Equilibrium(ABC):
         if start is None:
             start = self._extrapolated(load) if self._past else self._start(load)
         start = self._drawn_back(start, load)
-        newton = Newton(self, load, tolerance)
-        run = newton.run(start, steps)
-        try:
-            wanted = next(run)
-            while True:
-                wanted = run.send(self._direction(wanted))
-        except StopIteration as end:
-            u, slip_states = end.value
-        self._remember(load, u, alone=shanks is None)
-        return self._preload_state(newton, u, slip_states)
+        found = self._newton(start, load, tolerance, steps)
+        self._remember(load, found.displacement, alone=shanks is None)
+        return found
+
+    def _newton(self, u: Array, load: Array, tolerance: float, most: int) -> PreloadState:
+        """Newton's iteration from a start; shear that slipped is carried to the next load.
+
+        Raises NotConverged after `most` steps.
+        """
+        scale, taken, inner = float(np.linalg.norm(load)), 0, 0
+        least, rounding = np.inf, None
+        slip_states = self._stick_slip(u)
+        while True:
+            force = self._out_of_balance(u, load, slip_states)
+            size = float(np.linalg.norm(force)) / scale
+            if size < least:
+                least, self.nearest = size, u
+            if rounding is None and size < max(tolerance, ROUNDED):
+                rounding = self._rounding(u) / scale  # u hardly moves from here on
+                tolerance = max(tolerance, rounding)
+            if size < tolerance:
+                fresh = self._stick_slip(u)
+                change = max(_slip_change(new, old) for new, old in zip(fresh, slip_states, strict=True))
+                slip_states = fresh
+                size = float(np.linalg.norm(self._out_of_balance(u, load, slip_states))) / scale
+                if size < tolerance or change < 1e-12:
+                    break
+                continue
+            if taken >= most:
+                raise NotConverged(
+                    f"preload: after {taken} Newton steps {size:.1e} of the load is out of balance "
+                    f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps"
+                )
+            # as exact as Newton's own convergence asks, and no more than the tolerance does
+            accuracy = max(min(FORCING_TERM, 0.1 * size), 0.3 * tolerance / size)
+            step, count = self._direction(u, force, slip_states, accuracy)
+            u = self._line_search(u, step, load, slip_states)
+            # far off, k_t follows at once; near the end it is kept so that Newton converges
+            if size > FIX_FRICTION_BELOW:
+                slip_states = self._stick_slip(u)
+            taken, inner = taken + 1, inner + count
+        slipping = self._move_anchors(u, slip_states)
+        openings, pressures = self.contact(u)
+        return PreloadState(
+            pressures=pressures,
+            openings=openings,
+            slipping=slipping,
+            displacement=u,
+            imbalance=size,
+            newton_steps=taken,
+            inner_steps=inner,
+            factorisations=self.factorisations,
+        )
 
     def _drawn_back(self, u: Array, load: Array) -> Array:
         """A start, or where it presses points by far more than the load, what is nearer on the way to it from rest.
@@ -187,21 +229,6 @@ class Equilibrium(ABC):
                 return self._line_search(rest, u, load, self._stick_slip(rest))
             except NotConverged:  # the way does not lead down from rest
                 return u
-
-    def _preload_state(self, newton: "Newton", u: Array, slip_states: list[StickSlip]) -> PreloadState:
-        """The state that a load has led to; shear that slipped is carried to the next."""
-        slipping = self._move_anchors(u, slip_states)
-        openings, pressures = self.contact(u)
-        return PreloadState(
-            pressures=pressures,
-            openings=openings,
-            slipping=slipping,
-            displacement=u,
-            imbalance=newton.size,
-            newton_steps=newton.steps,
-            inner_steps=newton.inner,
-            factorisations=self.factorisations,
-        )
 
     def _extrapolated(self, load: Array) -> Array:
         """Displacement to start from: the last one, or what leads on from the last few, whichever is nearer to balance.
@@ -261,27 +288,14 @@ class Equilibrium(ABC):
 
         Asked for several times in a step, found once.
         """
-        known = self._known.get(id(u))
-        if known is None or known[0] is not u:
+        if self._known is None or self._known[0] is not u:
             moves = [self._move(interface, u) for interface, _ in self.joints]
-            known = self._remember_joints(
-                u,
-                [
-                    (move, *law.pressure(-(move[:, 0] + interface.gap)))
-                    for move, (interface, law) in zip(moves, self.joints, strict=True)
-                ],
-            )
-        return known[1]
-
-    def _remember_joints(
-        self, u: Array, state: list[tuple[Array, Array, Array]]
-    ) -> tuple[Array, list[tuple[Array, Array, Array]]]:
-        """Remember the state of the joints under a displacement, and forget the oldest."""
-        self._known.pop(id(u), None)
-        while len(self._known) >= self._at_hand:
-            del self._known[next(iter(self._known))]
-        self._known[id(u)] = u, state
-        return u, state
+            state = [
+                (move, *law.pressure(-(move[:, 0] + interface.gap)))
+                for move, (interface, law) in zip(moves, self.joints, strict=True)
+            ]
+            self._known = u, state
+        return self._known[1]
 
     def _stick_slip(self, u: Array) -> list[StickSlip]:
         slip_states = []
@@ -293,14 +307,14 @@ class Equilibrium(ABC):
             )
         return slip_states
 
-    def _out_of_balance(self, u: Array, load: Array, slip_states: list[StickSlip]) -> Array:
+    def _out_of_balance(self, u: Array, load: Array, slip_states: Sequence[StickSlip]) -> Array:
         force = load - self.stiffness @ u
         for (move, p, _), (interface, _), slip_state in zip(self._state(u), self.joints, slip_states, strict=True):
             local = np.concatenate([-p[:, None], slip_state.shear(move[:, 1:])], axis=1) * interface.weights[:, None]
             force = force - interface.relative.T @ local.ravel()
         return self._admissible(np.asarray(force))
 
-    def _tangents(self, u: Array, slip_states: list[StickSlip]) -> list[tuple[Any, Array, Array]]:
+    def _tangents(self, u: Array, slip_states: Sequence[StickSlip]) -> list[tuple[Any, Array, Array]]:
         """For each joint: interface, normal stiffness (q,) and tangential tangent (q, 2, 2), both times the area."""
         out = []
         for (move, _, k_n), (interface, _), slip_state in zip(self._state(u), self.joints, slip_states, strict=True):
@@ -309,7 +323,7 @@ class Equilibrium(ABC):
             )
         return out
 
-    def _line_search(self, u: Array, step: Array, load: Array, slip_states: list[StickSlip]) -> Array:
+    def _line_search(self, u: Array, step: Array, load: Array, slip_states: Sequence[StickSlip]) -> Array:
         """The displacement along a step at which the slope of the energy has fallen to a fraction.
 
         The energy is convex along the line. The state of the joints there is kept where the search ends at it.
@@ -319,7 +333,7 @@ class Equilibrium(ABC):
         def at(length: float, *, known: bool = True) -> Array:
             found = np.asarray(u + length * step)
             if known:
-                self._remember_joints(found, ahead)
+                self._known = found, ahead
             return found
 
         stretch = self.stiffness @ step
@@ -390,66 +404,6 @@ def check_balance(load: Array, rigid: Array) -> None:
             f"the bolt forces do not balance ({net / scale:.1e} of the load is left over); each bolt must "
             "pull between two faces of different parts that face each other"
         )
-
-
-class StepWanted(NamedTuple):
-    """A Newton step at a displacement, for an out-of-balance force, to an accuracy relative to that [-]."""
-
-    u: Array
-    force: Array
-    slip_states: list[StickSlip]
-    accuracy: float
-
-
-@dataclass
-class Newton:
-    """Newton's iteration for one load: how far it has come, and what it has cost."""
-
-    balance: Equilibrium
-    load: Array
-    tolerance: float
-    size: float = np.inf
-    steps: int = 0
-    inner: int = 0
-
-    def run(self, u: Array, most: int) -> Generator[StepWanted, Step, tuple[Array, list[StickSlip]]]:
-        """Return the displacement and the tangential state in equilibrium; yield the steps that are wanted on the way.
-
-        Raises NotConverged after `most` steps.
-        """
-        balance, load = self.balance, self.load
-        scale = float(np.linalg.norm(load))
-        least, tolerance, rounding = np.inf, self.tolerance, None
-        slip_states = balance._stick_slip(u)
-        while True:
-            force = balance._out_of_balance(u, load, slip_states)
-            self.size = float(np.linalg.norm(force)) / scale
-            if self.size < least:
-                least, balance.nearest = self.size, u
-            if rounding is None and self.size < max(tolerance, ROUNDED):
-                rounding = balance._rounding(u) / scale  # u hardly moves from here on
-                tolerance = max(tolerance, rounding)
-            if self.size < tolerance:
-                fresh = balance._stick_slip(u)
-                change = max(_slip_change(new, old) for new, old in zip(fresh, slip_states, strict=True))
-                slip_states = fresh
-                self.size = float(np.linalg.norm(balance._out_of_balance(u, load, slip_states))) / scale
-                if self.size < tolerance or change < 1e-12:
-                    return u, slip_states
-                continue
-            if self.steps >= most:
-                raise NotConverged(
-                    f"preload: after {self.steps} Newton steps {self.size:.1e} of the load is out of balance "
-                    f"(tolerance {tolerance:.0e}); refine the mesh of the joint, or load it in steps"
-                )
-            # as exact as Newton's own convergence asks, and no more than the tolerance does
-            accuracy = max(min(FORCING_TERM, 0.1 * self.size), 0.3 * tolerance / self.size)
-            step, count = yield StepWanted(u, force, slip_states, accuracy)
-            u = balance._line_search(u, step, load, slip_states)
-            # far off, k_t follows at once; near the end it is kept so that Newton converges
-            if self.size > FIX_FRICTION_BELOW:
-                slip_states = balance._stick_slip(u)
-            self.steps, self.inner = self.steps + 1, self.inner + count
 
 
 def _through_last(past: Sequence[tuple[float, Array]], size: float) -> Array:

@@ -2,37 +2,24 @@
 
 Each Newton step is solved by conjugate gradients preconditioned with one factorisation at a reference state of the
 joints, since only the joint changes; the factorisation is renewed when it has aged. Where it costs no more than a few
-solutions (multigrid over MPI), each Newton step takes its own. Loads under which no joint slips can go together: what
-their iterations ask of the factorisation at the same time, it answers at once.
+solutions (multigrid over MPI), each Newton step takes its own.
 """
 
-from collections.abc import Callable, Generator, Sequence
-from typing import Any, NamedTuple, TypeVar
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.interface import Motion
 from faying.fe.vertices import VertexRestriction
-from faying.joint.equilibrium import (
-    MAX_NEWTON_STEPS,
-    Equilibrium,
-    Newton,
-    PreloadState,
-    Step,
-    StepWanted,
-    admissible,
-    check_balance,
-)
+from faying.joint.equilibrium import Equilibrium, Step, StickSlip, admissible, check_balance
 from faying.joint.joint_law import JointLaw
 from faying.numerics.constraint import constrain
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
 from faying.numerics.solve import Factorisation, Factoriser
 from faying.typing import Array, Index
-
-Found = TypeVar("Found")
-Steps = Generator[Array, Array, Found]  # yields forces (unknowns,), and is sent displacements near their answer
 
 AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper: one step costs a fiftieth of it
 CHEAP = 3  # the same where a factorisation costs no more than a few solutions
@@ -101,78 +88,9 @@ class PreloadProblem(Equilibrium):
         self._scale = float(np.linalg.norm(load))
         check_balance(load, self._rigid)
 
-    @property
-    def can_go_together(self) -> bool:
-        """Whether several loads are better solved at once.
-
-        No joint slips, a factorisation serves for more than one of them, and none was taken that is of something else:
-        that is far from all of them, and better replaced after the first.
-        """
-        taken = self.factor is not None and self.factorised_springs is None
-        return not (self._cheap or taken) and all(friction is None for friction in self.friction)
-
-    def solve_together(self, loads: Sequence[Array], *, tolerance: float) -> list[PreloadState | None]:
-        """Find equilibrium under several loads at once, each from the unloaded state, by solutions for all of them.
-
-        A factor is read once for all of them, which takes the time of two or three solutions one by one. No joint may
-        slip, since slip depends on what was before: see `can_go_together`. None stands for loads to which the one
-        factorisation, that of the middle one, or Newton, does not lead: `solve` may. Raises InputError as it does.
-
-        loads: nodal forces [N] (unknowns,); tolerance: as `solve` takes it.
-        """
-        for load in loads:
-            self._check_load(load)
-        self.stiffness, self._at_hand = self.parts, 2 * len(loads)
-        runs = [self._solve_steps(*one, tolerance) for one in zip(loads, self._guesses(loads), strict=True)]
-        order = np.argsort([np.linalg.norm(load) for load in loads])
-        try:
-            found = self._in_step(runs, int(order[(len(loads) - 1) // 2]))
-        finally:
-            self._at_hand = 1
-        for load, state in zip(loads, found, strict=True):
-            if state is not None:
-                self._remember(load, state.displacement, alone=True)
-        return found
-
-    def _in_step(self, runs: Sequence[Steps[PreloadState]], first: int) -> list[PreloadState | None]:
-        """What steps return that are answered together; None where they end in NotConverged.
-
-        first: who begins, and so chooses the springs to factorise with.
-        """
-        found: list[PreloadState | None] = [None] * len(runs)
-        answers: dict[int, Array | None] = dict.fromkeys([first, *range(len(runs))])
-        while answers:
-            requests = {}
-            for k, answer in answers.items():
-                try:
-                    requests[k] = next(runs[k]) if answer is None else runs[k].send(answer)
-                except StopIteration as end:
-                    found[k] = end.value
-                except NotConverged:
-                    pass
-            columns = self._near(np.stack(list(requests.values()), axis=1)) if requests else np.empty((0, 0))
-            answers = dict(zip(requests, map(np.ascontiguousarray, columns.T), strict=True))
-        return found
-
-    def _solve_steps(self, load: Array, guess: Guess, tolerance: float) -> Steps[PreloadState]:
-        """From a guess of the joints to equilibrium under a load, with the factorisation as it is."""
-        start = yield from self._initial_guess(load, guess)
-        newton = Newton(self, load, tolerance)
-        run = newton.run(start, MAX_NEWTON_STEPS)
-        wanted = next(run)
-        while True:
-            step = yield from self._direction_steps(wanted)
-            try:
-                wanted = run.send(step)
-            except StopIteration as end:
-                return self._preload_state(newton, *end.value)
-
     def _start(self, load: Array) -> Array:
-        [guess] = self._guesses([load])
-        return self._run_steps(self._initial_guess(load, guess))
-
-    def _initial_guess(self, load: Array, guess: Guess) -> Steps[Array]:
         """Displacement under springs that are tangent to p(approach) where the joints are likely to end up."""
+        guess = self._guess(load)
         laid, springs, push = [], [], load
         for (joint, law), (opening, pressure) in zip(self.joints, guess.joints, strict=True):
             k_n, k_t = law.stiffness(pressure)
@@ -188,22 +106,20 @@ class PreloadProblem(Equilibrium):
             def product(x: Array) -> Array:  # the sum of the matrices takes as long as several
                 return self._clear_fixed(sum((one @ x for one in springs), parts @ x))
 
-            found, count = yield from self._gradients(product, push, ROUGH, limit=limit)
+            found, count = self._gradients(product, push, ROUGH, limit=limit)
             if count < limit:
                 return found
-            self._require_shared_factor()
         self._factorise(springs, laid if guess.near else None)
-        found = yield push
-        return found
+        return self._near(push)
 
-    def _guesses(self, loads: Sequence[Array]) -> list[Guess]:
-        """Where the joints are likely to end up under each load: as the corners of the elements say.
+    def _guess(self, load: Array) -> Guess:
+        """Where the joints are likely to end up under a load: as the corners of the elements say.
 
         Only the corners move by themselves, a seventh of the unknowns or less. The parts are then too stiff in bending,
         and pressures right to some tenths.
         """
         if self.vertices is None:
-            return [self._uniform_guess(load) for load in loads]
+            return self._uniform_guess(load)
         unknowns, spread = self.vertices.unknowns, self.vertices.spread
         coarse = PreloadProblem(
             self.vertices.of_matrix(self.stiffness),
@@ -215,15 +131,11 @@ class PreloadProblem(Equilibrium):
             friction=self.friction,
             fixed=np.flatnonzero(np.isin(unknowns, self.fixed)),
         )
-        guesses = []
-        for load in loads:
-            try:
-                found = coarse.solve(coarse._admissible(spread.T @ load), tolerance=GUESSED)
-            except (NotConverged, InputError):
-                guesses.append(self._uniform_guess(load))
-            else:
-                guesses.append(Guess(tuple(zip(found.openings, found.pressures, strict=True)), near=True))
-        return guesses
+        try:
+            found = coarse.solve(coarse._admissible(spread.T @ load), tolerance=GUESSED)
+        except (NotConverged, InputError):
+            return self._uniform_guess(load)
+        return Guess(tuple(zip(found.openings, found.pressures, strict=True)), near=True)
 
     def _uniform_guess(self, load: Array) -> Guess:
         """Every joint at the mean pressure that the load would give it."""
@@ -254,21 +166,8 @@ class PreloadProblem(Equilibrium):
         assert self.factor is not None
         return self.factor.solve(forces)
 
-    def _direction(self, wanted: StepWanted) -> Step:
-        return self._run_steps(self._direction_steps(wanted))
-
-    def _run_steps(self, steps: Steps[Found]) -> Found:
-        """What steps return that nobody else goes with."""
-        try:
-            force = next(steps)
-            while True:
-                force = steps.send(self._near(force))
-        except StopIteration as end:
-            found: Found = end.value
-            return found
-
-    def _direction_steps(self, wanted: StepWanted) -> Steps[Step]:
-        force, accuracy, tangents = wanted.force, wanted.accuracy, self._tangents(wanted.u, wanted.slip_states)
+    def _direction(self, u: Array, force: Array, slip_states: Sequence[StickSlip], accuracy: float) -> Step:
+        tangents = self._tangents(u, slip_states)
 
         def product(x: Array) -> Array:
             y = self.stiffness @ x
@@ -280,29 +179,16 @@ class PreloadProblem(Equilibrium):
 
         if self.factor is None or self._refactorisation_pays(force):
             self._renew(tangents)
-        x, count = yield from self._gradients(product, force, accuracy)
+        x, count = self._gradients(product, force, accuracy)
         self._rate = count / -np.log10(accuracy)
         if count >= AGED:
-            self._require_shared_factor()
             self._renew(tangents)
-            x, more = yield from self._gradients(product, force, accuracy, limit=400)
+            x, more = self._gradients(product, force, accuracy, limit=400)
             count += more
         return x, count
 
-    @property
-    def _together(self) -> bool:
-        """Whether several loads go by the same factorisation."""
-        return self._at_hand > 1
-
-    def _require_shared_factor(self) -> None:
-        """Raise NotConverged where others need the factorisation as it is."""
-        if self._together:
-            raise NotConverged("preload: the factorisation that several loads share is too far from one of them")
-
     def _refactorisation_pays(self, force: Array) -> bool:
         """Whether a new factorisation costs less than the conjugate-gradient steps that the old one still asks for."""
-        if self._together:
-            return False
         if self._cheap:
             return True
         left = np.log10(float(np.linalg.norm(force)) / self._scale)  # decades of imbalance, below 0
@@ -315,13 +201,11 @@ class PreloadProblem(Equilibrium):
             laid.append((k_n / joint.weights, shear / joint.weights))
         self._factorise([joint.springs(*k) for (joint, _), k in zip(self.joints, laid, strict=True)], laid)
 
-    def _gradients(
-        self, product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = AGED
-    ) -> Steps[Step]:
+    def _gradients(self, product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = AGED) -> Step:
         """Conjugate gradients: the solution and how many steps it took, `limit` where that was not enough."""
         x = np.zeros_like(right)
         r = right.copy()
-        z = yield r
+        z = self._near(r)
         d, rho = z, float(r @ z)
         target = accuracy * float(np.linalg.norm(right))
         for count in range(1, limit + 1):
@@ -334,7 +218,7 @@ class PreloadProblem(Equilibrium):
             r -= alpha * q
             if np.linalg.norm(r) <= target:
                 return x, count
-            z = yield r
+            z = self._near(r)
             rho, old = float(r @ z), rho
             d = z + rho / old * d
         return x, limit

@@ -11,8 +11,7 @@ from faying.joint.modal import EXACT, SPARE_MODES, ModalProblem, Vibration, in_o
 from faying.joint.preload import PreloadProblem
 from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs
-from faying.joint.support_check import check_contact, check_motions, checked_preload
-from faying.joint.tighten import tighten_together
+from faying.joint.support_check import check_motions, checked_preload
 from faying.numerics.changed import UpdatedStiffness, assembled
 from faying.numerics.constraint import constrain
 from faying.numerics.damped import damped_near
@@ -25,7 +24,6 @@ from faying.numerics.solve import Factoriser
 from faying.typing import Array
 
 RANGE_ERROR = 1e-4  # of the squared frequencies at the ends of a range, which no digit of a law's range asks for
-AT_ONCE = 8_000_000  # unknowns of all preloads that are found at once
 MAX_ROUNDS = 6  # rounds of enrichment that cost about what a factorisation and the two rounds after it do
 BASIS_STATES, ROOM = 8, 24_000_000  # what the basis keeps: times the modes of one state, or numbers, whichever is more
 
@@ -161,54 +159,26 @@ def modes_with(
     return refined_modes(stiffness, mass, count, rigid=rigid, shift_frequency=frequency, solver=solver, spare=spare)
 
 
-class Preloads:
-    """The equilibria of a structure at its preloads: at all of them at once, where they can go together."""
-
-    def __init__(self, modal: ModalProblem, preloads: Sequence[PreloadCase]) -> None:
-        self.structure, self.preloads = modal.structure, preloads
-        self.problem = modal.structure.assembly(solver=modal.choice.solver)
-        self._found: list[PreloadState | None] | None = None
-
-    def at(self, number: int) -> PreloadState:
-        """The equilibrium at one of the preloads, counted from 0. Raises what `checked_preload` raises."""
-        if self._found is None:
-            self._found = self._together()
-        found = self._found[number]
-        if found is None:
-            return checked_preload(self.structure, self.problem, self.preloads[number])
-        check_contact(self.structure, found.pressures, found.openings)
-        return found
-
-    def _together(self) -> list[PreloadState | None]:
-        """The states at all preloads; None for those that are to be found one by one, each from the one before."""
-        count = len(self.preloads)
-        fits = 1 < count <= AT_ONCE // self.structure.mesh.unknowns
-        in_order = any(one.order is not None for one in self.preloads)
-        if not fits or in_order or not self.problem.can_go_together:
-            return [None] * count
-        return tighten_together(self.structure, self.problem, [one.forces for one in self.preloads])
-
-
 @final
 class Reanalysis:
     """An `Engine` with one factorisation and one basis for many states.
 
-    All preloads are found together, or each from those before; modes grow from one basis, and start from the
+    Each preload is found from those before; modes grow from one basis, and start from the
     factorisation of the preload. `Direct` has the same answer.
     """
 
     def __init__(self, modal: ModalProblem, preloads: Sequence[PreloadCase]) -> None:
-        self.modal = modal
-        self._preloads, self._shared = Preloads(modal, preloads), SharedModes()
+        self.modal, self._preloads, self._shared = modal, preloads, SharedModes()
+        self._problem = modal.structure.assembly(solver=modal.choice.solver)
         self._looked = False  # for modes that only the ends of a range bring among the lowest
 
     def preload(self, number: int) -> PreloadState:
         """See `Engine`."""
-        return self._preloads.at(number)
+        return checked_preload(self.modal.structure, self._problem, self._preloads[number])
 
     def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
         """See `Engine`; preload and modes lend each other their factorisations."""
-        shared, preload, modal = self._shared, self._preloads.problem, self.modal
+        shared, preload, modal = self._shared, self._problem, self.modal
         structure, choice = modal.structure, modal.choice
         shared.begin(modal, preload)
         modes, stiffness = shared.of(modal, springs)

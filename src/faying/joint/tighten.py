@@ -8,23 +8,10 @@ import numpy as np
 from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import Equilibrium, PreloadState
-from faying.joint.preload import PreloadProblem
 from faying.typing import Array
 
 BALANCED = 1e-9  # of the load: what is out of balance then moves pressures by some 1e-10 of the greatest
 SNUG = 0.01  # of its force, in a solid bolt that is yet to be tightened: without any, it would fall out
-
-
-def tighten_together(
-    structure: BoltedStructure, assembly: PreloadProblem, forces: Sequence[Sequence[float]]
-) -> list[PreloadState | None]:
-    """As `tighten` for several sets of forces [N] at once, all bolts pulled at once; see `solve_together`."""
-    loads = structure.loads
-    found = assembly.solve_together([loads @ np.asarray(one, dtype=float) for one in forces], tolerance=BALANCED)
-    return [
-        None if state is None else replace(state, bolt_forces=tuple(float(f) for f in one))
-        for state, one in zip(found, forces, strict=True)
-    ]
 
 
 def tighten(

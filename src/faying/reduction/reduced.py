@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError, NotConverged
-from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StepWanted
+from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
 from faying.numerics.damped import lowest_complex
@@ -124,15 +124,15 @@ class ReducedEquilibrium(Equilibrium):
     def _start(self, load: Array) -> Array:
         return evenly_pressed(self.stiffness, self.joints, load)
 
-    def _direction(self, wanted: StepWanted) -> Step:
+    def _direction(self, u: Array, force: Array, slip_states: Sequence[StickSlip], accuracy: float) -> Step:
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-        size = float(np.linalg.norm(wanted.force))
+        size = float(np.linalg.norm(force))
         falls, self._size = size < REUSE_BELOW * self._size, size
         if falls and self._tangent is not None:  # near the end the last tangent does as well
-            return np.asarray(cho_solve(self._tangent, wanted.force)), 0
+            return np.asarray(cho_solve(self._tangent, force)), 0
         matrix = self.stiffness.copy()
-        for interface, k_n, k_t in self._tangents(wanted.u, wanted.slip_states):
+        for interface, k_n, k_t in self._tangents(u, slip_states):
             if not k_t[:, 0, 1].any():  # nothing slides
                 matrix += joint_stiffness(interface.quick, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
                 continue
@@ -146,7 +146,7 @@ class ReducedEquilibrium(Equilibrium):
             self._tangent = cho_factor(matrix)
         except LinAlgError:
             raise NotConverged("preload: the joint opens fully on the way; load it in smaller steps") from None
-        return np.asarray(cho_solve(self._tangent, wanted.force)), 0
+        return np.asarray(cho_solve(self._tangent, force)), 0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,9 +20,6 @@ FORM = '"upper.joint", or {part = "upper", normal = "+z"}'
 def read_selector(table: Table) -> Selector | None:
     """Read the table of one selector; None where its faults leave none."""
     part = table.get("part")
-    if "point" in table.data:
-        table.faults.add(f"{table.where}.point has become {table.where}.nearest; rename the key")
-        table.data.pop("point")
     given: dict[str, Any] = {key: table.get(key) for key in SELECTOR if key != "part"}
     rules = [key for key in ("normal", "touching", "nearest", "number") if key in table.data]
     if not rules and part is not None:

@@ -71,12 +71,6 @@ def _parts(value: Any, name: str) -> tuple[str, ...]:
 
 def _faces(table: Table) -> dict[str, Selector]:
     """Take [geometry.face]."""
-    if "face_at" in table.data:
-        table.faults.add(
-            f"{table.where}.face_at has become {table.where}.face, with nearest in place of point; write for example "
-            '[geometry.face] "upper.end" = {part = "upper", nearest = ["50 mm", "0 mm", "30 mm"]}'
-        )
-        table.data.pop("face_at")
     found = {name: read_selector(one) for name, one in table.named("face").items()}
     return {name: selector for name, selector in found.items() if selector is not None}
 

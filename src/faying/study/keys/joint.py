@@ -70,9 +70,6 @@ class JointChoice:
     @classmethod
     def of(cls, table: Table, index: int) -> "JointChoice":
         """Read one [[joint]]."""
-        if "gap" in table.data:
-            table.faults.add(f"{table.where}.gap has become {table.where}.form.gap; rename the table")
-            table.data.pop("gap")
         name = table.get("name", f"joint {index + 1}")
         bonded = table.get("bonded")
         more = [key for key in table.data if key not in ("name", "faces", "bonded")]
