@@ -268,6 +268,30 @@ def test_what_was_solved_stays_where_the_rest_does_not_fit(tmp_path):
     assert [one.name for one in folder.iterdir()] == ["result.nc"]
 
 
+@pytest.mark.parametrize("number", files.STOPS)
+@pytest.mark.parametrize("at", ["gethostname", "rmtree"])
+def test_a_stop_while_the_hidden_folder_is_made_or_removed(tmp_path, monkeypatch, number, at):
+    """It comes once the folder is as it should be, so that none is left."""
+    owner = socket if at == "gethostname" else shutil  # which the lock is written with, and the folder removed
+    call = getattr(owner, at)
+
+    def stopped(*args, **given):
+        signal.raise_signal(number)
+        return call(*args, **given)
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    before = signal.signal(number, stop)
+    try:
+        monkeypatch.setattr(owner, at, stopped)
+        with pytest.raises(KeyboardInterrupt), files.together(tmp_path / "results", "give another"):
+            pass
+    finally:
+        signal.signal(number, before)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_link_that_leads_nowhere(tmp_path):
     (tmp_path / "results").symlink_to(tmp_path / "gone")
     words = "is a link that leads nowhere; remove it"
