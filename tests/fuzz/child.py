@@ -190,6 +190,7 @@ READERS = {
     "netcdf": tree,
     "arrays": arrays,
     "mtx": lambda path: matrices(path, mass=beside(path, "m.mtx"), dofs=beside(path, "dofs.txt")),
+    "npz": lambda path: matrices(path, mass=beside(path, "m.npz"), dofs=beside(path, "dofs.txt")),
     "sti": matrices,
     "study": study,
 }
