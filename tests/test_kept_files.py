@@ -111,6 +111,17 @@ def test_a_result_whose_triangles_name_no_nodes_is_refused(tmp_path):
         type(result).load(path)
 
 
+@pytest.mark.parametrize("name", ["laws", "surfaces"])
+def test_a_result_that_has_lost_the_laws_of_its_joints_is_refused(tmp_path, name):
+    from tests.helpers.results import small_result
+
+    tree = small_result().tree()
+    del tree.attributes[name]
+    path = netcdf.write(tmp_path / "result.nc", tree)
+    with pytest.raises(faying.ReadError, match=rf"it has 0 {name} for \d joints"):
+        faying.load(path)
+
+
 def test_json_never_holds_what_it_does_not_know():
     tree = {"a": [1.0, float("nan"), np.float64("inf")], "b": ("x", {"c": -np.inf}), "d": None, "e": 3}
     assert json.loads(json_text(tree)) == {"a": [1.0, None, None], "b": ["x", {"c": None}], "d": None, "e": 3}
