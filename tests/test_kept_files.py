@@ -111,6 +111,17 @@ def test_a_result_whose_triangles_name_no_nodes_is_refused(tmp_path):
         type(result).load(path)
 
 
+@pytest.mark.parametrize("name", ["laws", "surfaces"])
+def test_a_result_that_has_lost_the_laws_of_its_joints_is_refused(tmp_path, name):
+    from tests.helpers.results import small_result
+
+    tree = small_result().tree()
+    del tree.attributes[name]
+    path = netcdf.write(tmp_path / "result.nc", tree)
+    with pytest.raises(faying.ReadError, match=rf"it has 0 {name} for \d joints"):
+        faying.load(path)
+
+
 def test_json_never_holds_what_it_does_not_know():
     tree = {"a": [1.0, float("nan"), np.float64("inf")], "b": ("x", {"c": -np.inf}), "d": None, "e": 3}
     assert json.loads(json_text(tree)) == {"a": [1.0, None, None], "b": ["x", {"c": None}], "d": None, "e": 3}
@@ -266,6 +277,30 @@ def test_what_was_solved_stays_where_the_rest_does_not_fit(tmp_path):
     with pytest.raises(faying.InputError, match=r"No space left on device; result.nc was written"):
         write()
     assert [one.name for one in folder.iterdir()] == ["result.nc"]
+
+
+@pytest.mark.parametrize("number", files.STOPS)
+@pytest.mark.parametrize("at", ["gethostname", "rmtree"])
+def test_a_stop_while_the_hidden_folder_is_made_or_removed(tmp_path, monkeypatch, number, at):
+    """It comes once the folder is as it should be, so that none is left."""
+    owner = socket if at == "gethostname" else shutil  # which the lock is written with, and the folder removed
+    call = getattr(owner, at)
+
+    def stopped(*args, **given):
+        signal.raise_signal(number)
+        return call(*args, **given)
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    before = signal.signal(number, stop)
+    try:
+        monkeypatch.setattr(owner, at, stopped)
+        with pytest.raises(KeyboardInterrupt), files.together(tmp_path / "results", "give another"):
+            pass
+    finally:
+        signal.signal(number, before)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_link_that_leads_nowhere(tmp_path):

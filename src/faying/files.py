@@ -156,13 +156,16 @@ def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Pa
         raise InputError(f"{folder} is a link that leads nowhere; remove it, or {remedy}")
     for left in (folder / name, folder.parent / name):
         if left.is_dir():
-            release(left, locked(left, folder, remedy))
+            with uninterrupted():
+                release(left, locked(left, folder, remedy))
     with new_folder(folder.parent, remedy):
         hidden = folder / name if folder.is_dir() else folder.parent / name
         if folder.exists() and not folder.is_dir():
             raise InputError(f"cannot make the folder {folder}: a file has this name; {remedy}")
-        lock = locked(hidden, folder, remedy)
+        lock = None
         try:
+            with uninterrupted():
+                lock = locked(hidden, folder, remedy)
             try:
                 yield hidden
             except InputError as fault:
@@ -174,7 +177,8 @@ def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Pa
             with uninterrupted():
                 _appear(hidden, folder, sorted(path for path in hidden.iterdir() if path.name != LOCK))
         finally:
-            release(hidden, lock)
+            if lock is not None:
+                release(hidden, lock)
 
 
 def _appear(hidden: Path, folder: Path, files: Sequence[Path]) -> None:
@@ -256,23 +260,30 @@ def _lock(file: IO[str]) -> bool:
 
 def release(folder: Path, lock: IO[str]) -> None:
     """Remove a folder that is held, and let go of it."""
-    if os.name == "nt":  # where an open file cannot be removed
+    with uninterrupted():
+        if os.name == "nt":  # where an open file cannot be removed
+            lock.close()
+        shutil.rmtree(folder, ignore_errors=True)
         lock.close()
-    shutil.rmtree(folder, ignore_errors=True)
-    lock.close()
-    with suppress(OSError):  # a disk of another host shows an open file until it is closed
-        folder.rmdir()
+        with suppress(OSError):  # a disk of another host shows an open file until it is closed
+            folder.rmdir()
+
+
+# what ends a command, with SIGHUP where the system has it: a terminal that is closed
+STOPS = (signal.SIGINT, signal.SIGTERM, *[one for one in signal.Signals if one.name == "SIGHUP"])
 
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Hold Ctrl-C and SIGTERM back for the moment; what came is passed on at the end."""
+    """Hold what stops a command back for the moment; what came is passed on at the end."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     came: list[int] = []
-    before = {n: signal.signal(n, lambda n, _: came.append(n)) for n in (signal.SIGINT, signal.SIGTERM)}
+    before: dict[signal.Signals, Any] = {}
     try:
+        for which in STOPS:
+            before[which] = signal.signal(which, lambda n, _: came.append(n))
         yield
     finally:
         for which, handler in before.items():

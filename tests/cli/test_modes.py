@@ -75,7 +75,7 @@ def test_faults(exported, capsys, tmp_path):
     gone = ["modes", "--stiffness", str(tmp_path / "gone.npz"), "--mass", str(out / "mass.npz")]
     assert "no file" in fault(capsys, gone)
     text = ["modes", "--stiffness", str(out / "stiffness.npz"), "--mass", "mass.txt"]
-    assert "should be .mtx or .npz" in fault(capsys, text)
+    assert "give it as .mtx or .npz" in fault(capsys, text)
     (tmp_path / "job.sti").write_text("")
     two = ["modes", "--stiffness", str(tmp_path / "job.sti"), "--mass", str(out / "mass.npz")]
     assert "brings its mass with it" in fault(capsys, two)

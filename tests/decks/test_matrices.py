@@ -269,6 +269,14 @@ def test_npz_of_scipy(model, tmp_path, form, dtype):
     assert np.abs(read[1] - M).max() < 1e-12 * np.abs(M).max()
 
 
+def test_npz_of_scipy_with_its_unknowns(model, tmp_path):
+    K, M, dofs = model[2]
+    given = market(tmp_path, K, M, dofs) | {"path": saved(tmp_path, K, "k.npz"), "mass": saved(tmp_path, M, "m.npz")}
+    agrees(model, read_matrices(**given, **UNITS))
+    with pytest.raises(faying.InputError, match="k.npz holds one matrix and no nodes; name the mass and the dofs"):
+        read_matrices(given["path"], **UNITS)
+
+
 def parts(matrix, **changes):
     A = matrix.tocsr()
     return {

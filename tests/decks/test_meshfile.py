@@ -348,6 +348,8 @@ def test_faults_of_a_mesh_file(tmp_path):
         r"40 of \d+ nodes belong to no element: 1, 2, 3, 4, 5, ...; delete them",
     )
     fault(tmp_path, good + "*ELEMENT, TYPE=C3D8\n" + turned + "\n", "element 9 is given twice")
+    again = ", ".join(map(str, [90001, *first[3]]))
+    fault(tmp_path, good + f"*ELEMENT, TYPE=C3D8\n{again}\n", "1 elements have the nodes of another one and.*: 90001")
     fault(tmp_path, good.replace("C3D8I", "C3D27"), "elements of type C3D27 are not known; the known ones are C3D4")
     fault(
         tmp_path,

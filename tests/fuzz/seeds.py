@@ -194,6 +194,9 @@ def matrices(folder):
         "".join(f"{n} {d}\n" for n, d in zip(nodes, np.tile([1, 2, 3], len(nodes)), strict=False))
     )
     yield "mtx", folder / "k.mtx"
+    for name, A in (("k.npz", K), ("m.npz", M)):
+        sp.save_npz(folder / name, A)
+    yield "npz", folder / "k.npz"
     for name, A in (("job.sti", K), ("job.mas", M)):
         low = sp.tril(A).tocoo()
         lines = [f"{i + 1} {j + 1} {v:.12e}" for i, j, v in zip(low.row, low.col, low.data, strict=True)]

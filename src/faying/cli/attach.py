@@ -59,10 +59,10 @@ from faying.text import json_text
     "--matrices",
     type=PATH,
     metavar="FILE",
-    help="Stiffness and mass of the bare parts: job.sti of CalculiX, .mtx, DMIG; gives modes with the joint.",
+    help="Stiffness and mass of the bare parts: job.sti of CalculiX, .mtx, .npz, DMIG; gives modes with the joint.",
 )
-@click.option("--mass", type=PATH, help="With a .mtx: file of the mass matrix.")
-@click.option("--dofs", type=PATH, help='With a .mtx: "node direction" of each row.')
+@click.option("--mass", type=PATH, help="With a .mtx or .npz: file of the mass matrix.")
+@click.option("--dofs", type=PATH, help='With a .mtx or .npz: "node direction" of each row.')
 @click.option("--stiffness-unit", metavar="UNIT", help='Unit of the stiffness, such as "N/mm".')
 @click.option("--mass-unit", metavar="UNIT", help='Unit of the mass, such as "t".')
 @click.option(

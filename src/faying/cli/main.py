@@ -102,16 +102,15 @@ def _share_cores() -> None:
 def main(argv: list[str] | None = None) -> None:
     """Entry point of the command `faying`. Exit codes: 0 done, 1 failed or stopped, 2 wrong usage."""
     from faying.errors import FayingError
+    from faying.files import STOPS
 
     _open_streams()
     _share_cores()
-    # kill, and a batch system's time limit, clear up as Ctrl-C does
-    alone = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-    hung_up = getattr(signal, "SIGHUP", None)
-    if alone:
-        signal.signal(signal.SIGTERM, _stop)
-        if hung_up is not None and signal.getsignal(hung_up) is signal.SIG_DFL:  # nohup leaves it ignored
-            signal.signal(hung_up, _stop)
+    # kill, a batch system's time limit and a closed terminal clear up as Ctrl-C does; nohup ignores the last
+    alone = threading.current_thread() is threading.main_thread()
+    stops = [one for one in STOPS if alone and signal.getsignal(one) is signal.SIG_DFL]
+    for one in stops:
+        signal.signal(one, _stop)
     try:
         code: Any = cli.main(args=argv, prog_name="faying", standalone_mode=False)
         sys.stdout.flush()
@@ -133,6 +132,6 @@ def main(argv: list[str] | None = None) -> None:
         fault.show()
         sys.exit(fault.exit_code)
     finally:
-        if alone:
-            signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        for one in stops:
+            signal.signal(one, signal.SIG_DFL)
     sys.exit(code if isinstance(code, int) else 0)

@@ -14,6 +14,7 @@ from faying.file_kinds import MARKET, SPARSE, kind_of
 from faying.misuse import checked_call
 from faying.typing import Array, Index
 
+ALONE = (MARKET, SPARSE)  # files of one matrix, without its nodes
 SYMMETRIC = 1e-8  # largest difference from the transpose, relative to the largest entry
 
 
@@ -31,11 +32,11 @@ def read_matrices(
 
     Args:
         path: job.sti of CalculiX's SOLVER=MATRIXSTORAGE, with job.mas and job.dof beside it; or the stiffness as Matrix
-            Market (.mtx); or Nastran bulk data (.bdf, .nas, .dat, .pch) with DMIG entries.
+            Market (.mtx) or of SciPy (.npz); or Nastran bulk data (.bdf, .nas, .dat, .pch) with DMIG entries.
         stiffness_unit: Unit of the stiffness, such as "N/mm"; no format says it.
         mass_unit: Unit of the mass, such as "t".
-        mass: With .mtx, the mass as another such file.
-        dofs: With .mtx, a text file with "node direction" or "node.direction" in each line.
+        mass: With .mtx and .npz, the mass as another such file.
+        dofs: With .mtx and .npz, a text file with "node direction" or "node.direction" in each line.
         names: With DMIG, names of stiffness and mass.
 
     Returns:
@@ -51,12 +52,10 @@ def read_matrices(
             f'{file.name} does not state its units; give them, for example stiffness_unit = "N/mm", mass_unit = "t"'
         )
     scales = units.scale(stiffness_unit, "N/m", name="stiffness_unit"), units.scale(mass_unit, "kg", name="mass_unit")
-    if kind_of(file) is MARKET:
+    if kind_of(file) in ALONE:
         if mass is None or dofs is None:
-            raise InputError(
-                f"{file.name}: Matrix Market holds one matrix and no nodes; name the mass and the dofs too"
-            )
-        K, M, table = _market(file), _market(Path(mass)), read_dofs(Path(dofs))
+            raise InputError(f"{file.name} holds one matrix and no nodes; name the mass and the dofs too")
+        K, M, table = _matrix(file), _matrix(Path(mass)), read_dofs(Path(dofs))
     else:
         K, M, table = reader_of(file, "matrices").read_matrices(file, names)
     _check(file.name, K, M, table)
@@ -91,20 +90,14 @@ def read_pair(
     Without a list, each unknown counts as direction 1 of a node of its own. Raises what `read_matrices` raises.
     """
     file = Path(stiffness)
-    readers = {MARKET: _market, SPARSE: _npz}
-    kind = kind_of(file)
-    if kind not in readers:
+    if kind_of(file) not in ALONE:
         if mass is not None:
             raise InputError(f"{file.name} brings its mass with it; leave out {mass}")
         return read_matrices(file, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
     if mass is None:
         raise InputError(f"{file.name} holds the stiffness alone; name the mass too, .mtx or .npz")
-    other = Path(mass)
-    kind_of_mass = kind_of(other)
-    if kind_of_mass not in readers:
-        raise ReadError(f"{other}: the mass should be .mtx or .npz")
-    K = readers[kind](file) * units.scale(stiffness_unit, "N/m", name="stiffness unit")
-    M = readers[kind_of_mass](other) * units.scale(mass_unit, "kg", name="mass unit")
+    K = _matrix(file) * units.scale(stiffness_unit, "N/m", name="stiffness unit")
+    M = _matrix(Path(mass)) * units.scale(mass_unit, "kg", name="mass unit")
     table = np.column_stack([np.arange(1, K.shape[0] + 1), np.ones(K.shape[0], dtype=np.int64)])
     _check(file.name, K, M, table)
     return K.tocsr(), M.tocsr(), table
@@ -127,6 +120,14 @@ def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
         )
     order = np.array([place[int(node), int(axis)] for node, axis in wanted])
     return K[order][:, order].tocsr(), M[order][:, order].tocsr()
+
+
+def _matrix(path: Path) -> Any:
+    """The one matrix of a file. Raises ReadError where it is none."""
+    kind = kind_of(path)
+    if kind not in ALONE:
+        raise ReadError(f"{path} does not hold one matrix; give it as .mtx or .npz")
+    return _market(path) if kind is MARKET else _npz(path)
 
 
 def _npz(path: Path) -> Any:

@@ -206,7 +206,14 @@ class _Builder:
         return out
 
     def _check(self, points: Array, cells: list[Index]) -> None:
+        marks = np.random.default_rng(0).integers(0, 2**62, len(points))  # of nodes; their sum tells elements apart
         for (numbers, _), block in zip(self.raw.elements.values(), cells, strict=True):
+            again = np.delete(numbers, np.unique(marks[block].sum(axis=1), return_index=True)[1])
+            if len(again):
+                raise InputError(
+                    f"{self.name}: {len(again)} elements have the nodes of another one and would count twice: "
+                    f"{few(again)}; delete them"
+                )
             wrong = numbers[least_jacobian(points, block) <= 0]
             if len(wrong):
                 raise InputError(

@@ -387,7 +387,10 @@ class RunRecord(Recorded):
 
     @checked_call
     def refuse_strays(self) -> None:
-        """Raise ReadError where triangles name nodes, parts or faces that there are not, as in a damaged file."""
+        """Raise ReadError where joints lack their law, or triangles name nodes, parts or faces that there are not."""
+        for name, found in (("surfaces", self.surfaces), ("laws", self.laws)):
+            if len(found) != len(self.joints):
+                raise ReadError(f"it has {len(found)} {name} for {len(self.joints)} joints")
         for name, indices, count in (
             ("triangles", self.triangles, len(self.outline)),
             ("part_of_triangle", self.part_of_triangle, np.inf),
