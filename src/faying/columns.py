@@ -26,7 +26,17 @@ MARKS = ("\t", ";", ",")
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\))\s*")
 _LEVEL = re.compile(r"([^\[(]*?)\s*\b(dB\b.*)", re.IGNORECASE)  # decibels, with a reference in brackets or without
 _WORD = re.compile(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?")
-_SIGNS = (("µ", "u"), ("μ", "u"), ("°", "deg"), ("²", "^2"), ("\ufffd", "^2"), ("**", "^"), ("·", "*"), ("⋅", "*"))
+_SIGNS = (
+    ("Âµ", "u"),
+    ("µ", "u"),
+    ("μ", "u"),
+    ("°", "deg"),
+    ("²", "^2"),
+    ("\ufffd", "^2"),
+    ("**", "^"),
+    ("·", "*"),
+    ("⋅", "*"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
