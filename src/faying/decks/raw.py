@@ -53,8 +53,8 @@ class RawMesh:
     side_sets: name -> rows of (element number, side); face_elements: name -> arrays of node numbers (f, a); extra:
     numbers of nodes that only elements other than solids hold; references: nodes that constraints alone name; turned:
     nodes whose displacements are in directions of their own; notes: what was left out; pretensions: sections at which
-    bolts are tightened; counted: whether the file says how many nodes and elements it has, and has them. Raises
-    ReadError for numbers below 1 or without end, and places that are not finite.
+    bolts are tightened; counted: whether the file says how many nodes and elements it has, and has them, or where it
+    ends. Raises ReadError for numbers below 1 or without end, and places that are not finite.
     """
 
     numbers: Index
