@@ -1,5 +1,6 @@
 """What kind a file is: the same content is taken for the same thing under every name, and refused by what it is."""
 
+import gzip
 import zipfile
 
 import numpy as np
@@ -127,6 +128,16 @@ def test_a_zip_archive_is_what_its_files_say(tmp_path):
     assert kind_of(path).says == "an X3P file"
     path.write_bytes(path.read_bytes()[:2000])
     assert kind_of(path) is None
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("meta.yml", "surfaces: []")
+    assert kind_of(path).serves == ("scan",)
+
+
+def test_a_mesh_packed_by_gzip_is_refused_by_what_it_is(tmp_path):
+    path = tmp_path / "all.msh"
+    path.write_bytes(gzip.compress(meshfiles.gmsh(two()).encode()))
+    with pytest.raises(faying.ReadError, match=r"all.msh is a file packed by gzip, which is not read here"):
+        faying.read_mesh(path, unit="mm")
 
 
 def test_a_saved_result_is_one_under_every_name(tmp_path):

@@ -26,17 +26,7 @@ MARKS = ("\t", ";", ",")
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\))\s*")
 _LEVEL = re.compile(r"([^\[(]*?)\s*\b(dB\b.*)", re.IGNORECASE)  # decibels, with a reference in brackets or without
 _WORD = re.compile(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?")
-_SIGNS = (
-    ("Âµ", "u"),
-    ("µ", "u"),
-    ("μ", "u"),
-    ("°", "deg"),
-    ("²", "^2"),
-    ("\ufffd", "^2"),
-    ("**", "^"),
-    ("·", "*"),
-    ("⋅", "*"),
-)
+_SIGNS = (("µ", "u"), ("μ", "u"), ("°", "deg"), ("²", "^2"), ("\ufffd", "^2"), ("**", "^"), ("·", "*"), ("⋅", "*"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +76,7 @@ def _name(text: str) -> str:
 
 def plain_unit(text: str) -> str:
     """Return the name of a unit in the signs that `units` reads."""
+    text = text.replace("Â", "")  # UTF-8 that was read as Latin-1
     for sign, plain in _SIGNS:
         text = text.replace(sign, plain)
     return text.strip()

@@ -80,6 +80,8 @@ KINDS = (
     FileKind(says="a VTK file", holds=r"# vtk DataFile", suffixes=(".vtk",), serves=("mesh",), reader="vtk"),
     FileKind(says="a matrix of CalculiX", holds=_ROW, suffixes=(".sti",), serves=("matrices",), reader="calculix"),
     FileKind(says="an instrument's file", holds=_SCANS, suffixes=_ENDS, serves=("scan",)),
+    FileKind(says="a container of scans", holds=r"PK[\s\S]*^(?:meta\.yml|index\.json)$", serves=("scan",)),
+    FileKind(says="a file packed by gzip", holds=r"\x1f\x8b", suffixes=(".gz",), serves=("scan",)),
     FileKind(says="a table as text", holds="(?!)", suffixes=(".csv", ".dat"), serves=("test", "numbers")),
     FileKind(says="a mesh of Ansys Fluent", holds=r"\s*\([012][ \t]+[\"\d]"),
     FileKind(says="an input file of LS-DYNA", holds=r"(?:\$.*\n)*\*KEYWORD\b"),
