@@ -1,5 +1,6 @@
 """What kind a file is: the same content is taken for the same thing under every name, and refused by what it is."""
 
+import gzip
 import zipfile
 
 import numpy as np
@@ -127,6 +128,16 @@ def test_a_zip_archive_is_what_its_files_say(tmp_path):
     assert kind_of(path).says == "an X3P file"
     path.write_bytes(path.read_bytes()[:2000])
     assert kind_of(path) is None
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("meta.yml", "surfaces: []")
+    assert kind_of(path).serves == ("scan",)
+
+
+def test_a_mesh_packed_by_gzip_is_refused_by_what_it_is(tmp_path):
+    path = tmp_path / "all.msh"
+    path.write_bytes(gzip.compress(meshfiles.gmsh(two()).encode()))
+    with pytest.raises(faying.ReadError, match=r"all.msh is a file packed by gzip, which is not read here"):
+        faying.read_mesh(path, unit="mm")
 
 
 def test_a_saved_result_is_one_under_every_name(tmp_path):
@@ -173,6 +184,46 @@ def test_nodes_of_an_input_file_may_stand_in_files_that_it_includes(tmp_path):
     path = tmp_path / "m.inp"
     path.write_text("*NODE, INPUT=nodes.txt\n" + "\n".join(whole.splitlines()[9:]) + "\n")
     assert np.ptp(faying.read_mesh(path, unit="mm").points, axis=0) == pytest.approx([0.02, 0.02, 0.01])
+
+
+def test_names_of_included_files_may_differ_in_upper_and_lower_case(tmp_path):
+    """A deck written on Windows, where names are alike in both cases and folders stand between backslashes."""
+    (tmp_path / "Sets").mkdir()
+    (tmp_path / "Sets" / "Top.inc").write_text("5, 6, 7, 8\n")
+    path = tmp_path / "m.inp"
+    path.write_text(deck("*NSET, NSET=TOP", "*INCLUDE, INPUT=sets\\TOP.INC"))
+    assert list(faying.read_mesh(path, unit="mm").faces) == ["TOP"]
+    assert included(path) == (tmp_path / "Sets" / "Top.inc",)
+    bulk = tmp_path / "m.bdf"
+    (tmp_path / "Grids.dat").write_text("".join(f"GRID,{k},,{x}.,{y}.,{z}.\n" for k, (x, y, z) in enumerate(CUBE, 1)))
+    bulk.write_text("BEGIN BULK\nINCLUDE 'GRIDS.DAT'\nCHEXA,1,1,1,2,3,4,5,6\n+,7,8\nENDDATA\n")
+    assert np.ptp(faying.read_mesh(bulk, unit="mm").points, axis=0) == pytest.approx([0.02, 0.02, 0.01])
+    (tmp_path / "Grids.dat").unlink()
+    with pytest.raises(faying.ReadError, match=r"cannot read .*GRIDS\.DAT"):
+        faying.read_mesh(bulk, unit="mm")
+
+
+def test_format_1_of_gmsh(tmp_path):
+    """Two bricks with their faces, as those of format 2.2; that one has no groups by name."""
+    text = meshfiles.gmsh(two(), version="2.2")
+    (tmp_path / "two.msh").write_text(text)
+    nodes, _, elements = text.partition("$EndPhysicalNames\n")[2].partition("$Elements\n")
+    rows = [row.split() for row in elements.splitlines()[1:-1]]
+    lines = [" ".join([n, kind, group, own, str(len(corners)), *corners]) for n, kind, _, group, own, *corners in rows]
+    old = nodes.replace("$Nodes", "$NOD").replace("$EndNodes", "$ENDNOD")
+    for name in ("all.inp", "all.msh"):
+        (tmp_path / name).write_text("\n".join([old + "$ELM", str(len(lines)), *lines, "$ENDELM", ""]))
+        found = faying.read_mesh(tmp_path / name, unit="mm")
+        expected = faying.read_mesh(tmp_path / "two.msh", unit="mm")
+        assert np.array_equal(found.points, expected.points)
+        assert sorted(found.parts) == ["part50", "part51"]
+        assert [len(block) for face in found.faces.values() for block in face] == [
+            len(block) for face in expected.faces.values() for block in face
+        ]
+    lines[0] = lines[0].replace(" 8 ", " 7 ", 1)
+    (tmp_path / "wrong.msh").write_text("\n".join([old + "$ELM", str(len(lines)), *lines, "$ENDELM", ""]))
+    with pytest.raises(faying.ReadError, match="has 7 nodes, where its kind has 8"):
+        faying.read_mesh(tmp_path / "wrong.msh", unit="mm")
 
 
 def test_earlier_formats_of_gmsh_are_alike(tmp_path):

@@ -24,6 +24,7 @@ LINE_MEMORY = 450  # B of a line of numbers beside its text while a table is rea
 
 MARKS = ("\t", ";", ",")
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\))\s*")
+_LEVEL = re.compile(r"([^\[(]*?)\s*\b(dB\b.*)", re.IGNORECASE)  # decibels, with a reference in brackets or without
 _WORD = re.compile(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?")
 _SIGNS = (("µ", "u"), ("μ", "u"), ("°", "deg"), ("²", "^2"), ("\ufffd", "^2"), ("**", "^"), ("·", "*"), ("⋅", "*"))
 
@@ -57,6 +58,9 @@ def split_heading(line: str) -> tuple[Cell, ...]:
 
 def cell(text: str) -> Cell:
     """Take one column's text apart into name and unit."""
+    level = _LEVEL.fullmatch(text)
+    if level is not None:
+        return Cell(text=text, name=_name(level[1].rstrip("/ ")), unit=plain_unit(level[2]))
     found = _BRACKETS.fullmatch(text)
     if found is not None:
         return Cell(text=text, name=_name(found[1]), unit=plain_unit(found[2] or found[3] or ""))
@@ -72,6 +76,7 @@ def _name(text: str) -> str:
 
 def plain_unit(text: str) -> str:
     """Return the name of a unit in the signs that `units` reads."""
+    text = text.replace("Â", "")  # UTF-8 that was read as Latin-1
     for sign, plain in _SIGNS:
         text = text.replace(sign, plain)
     return text.strip()

@@ -49,7 +49,7 @@ _SCANS = r"DIGITAL SURF|DSCOMPRESSED|VCA DATA|[ab]BCR-|Alicona|II\*\0|MM\0\*|\x9
 _ENDS = (".sur", ".opd", ".opdx", ".plux", ".sdf", ".al3d", ".tif", ".npy", ".nc")
 _MED = r"\x89HDF[\s\S]*(?:INFOS_GENERALES|ENS_MAA)"
 _RECORD = rf"\x89HDF[\s\S]*{SEAL.decode()}"  # the checksum behind what Faying saves
-_GMSH = r"(?:\$Comments[\s\S]*?\$EndComments)?\s*\$MeshFormat\b"
+_GMSH = r"(?:\$Comments[\s\S]*?\$EndComments)?\s*\$(?:MeshFormat|NOD)\b"
 _SETS = r"\s*-1[ \t]*\n[ \t]*\d{1,4}b?\s"
 _TESTED = rf"(?={_SETS})(?![\s\S]*^ *-1 *\n *(?:780|2412)\s)[\s\S]*^ *-1 *\n *(?:55|58b?)\s"  # without elements
 
@@ -80,6 +80,8 @@ KINDS = (
     FileKind(says="a VTK file", holds=r"# vtk DataFile", suffixes=(".vtk",), serves=("mesh",), reader="vtk"),
     FileKind(says="a matrix of CalculiX", holds=_ROW, suffixes=(".sti",), serves=("matrices",), reader="calculix"),
     FileKind(says="an instrument's file", holds=_SCANS, suffixes=_ENDS, serves=("scan",)),
+    FileKind(says="a container of scans", holds=r"PK[\s\S]*^(?:meta\.yml|index\.json)$", serves=("scan",)),
+    FileKind(says="a file packed by gzip", holds=r"\x1f\x8b", suffixes=(".gz",), serves=("scan",)),
     FileKind(says="a table as text", holds="(?!)", suffixes=(".csv", ".dat"), serves=("test", "numbers")),
     FileKind(says="a mesh of Ansys Fluent", holds=r"\s*\([012][ \t]+[\"\d]"),
     FileKind(says="an input file of LS-DYNA", holds=r"(?:\$.*\n)*\*KEYWORD\b"),

@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 
-from faying import Scan
+from faying import Profile, Scan
 from faying.cli import main
 from faying.surface.files.write import write_scan
 from faying.surface.synthesize import spectral, with_missing
@@ -52,8 +52,7 @@ def test_text_file_without_unit_shows_how_to_give_it(rough, tmp_path, capsys):
     path = str(write_scan(rough, tmp_path / "a.csv", xy_unit="mm", z_unit="um"))
     assert run(path) == 1
     assert "--xy-unit mm --z-unit um" in capsys.readouterr().err
-    assert run(path, "--xy-unit", "mm", "--z-unit", "um", "--cross-check") == 0
-    assert "cross-check by numpy: agrees" in capsys.readouterr().out
+    assert run(path, "--xy-unit", "mm", "--z-unit", "um") == 0
 
 
 @pytest.mark.parametrize(
@@ -73,6 +72,24 @@ def test_scans_that_cannot_be_analysed_end_in_a_sentence(rough, tmp_path, capsys
     assert match in err
     assert err.startswith("faying: ")
     assert "Traceback" not in err
+
+
+@pytest.mark.parametrize("shape", [(32, 32), (40, 24), 40])
+def test_small_scans_have_a_roughness_and_no_fractal_numbers(tmp_path, capsys, shape):
+    """Of a cosine of 4 periods along x: amplitude / sqrt(2)."""
+    n = shape if isinstance(shape, int) else shape[1]
+    wave = 1e-6 * np.cos(2 * np.pi * 4 * np.arange(n) / n)
+    heights = wave if isinstance(shape, int) else np.tile(wave, (shape[0], 1))
+    made = Profile(heights=heights, spacing=1e-6) if heights.ndim == 1 else Scan(heights=heights, spacing=(1e-6, 1e-6))
+    path = write_scan(made, tmp_path / "a.x3p", precision="D")
+    assert run(str(path), "--degree", "0") == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert f"{'R' if heights.ndim == 1 else 'S'}q 707.1 nm" in out
+    assert "psd: no D and G:" in out
+    assert run(str(path), "--degree", "0", "--json") == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["roughness"]["Rq"] == pytest.approx(1e-6 / 2**0.5)
+    assert list(document["fits"]["psd"]) == ["error"]
 
 
 def test_damaged_file(file, capsys):

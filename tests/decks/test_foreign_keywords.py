@@ -396,6 +396,15 @@ def test_nodes_of_no_element_in_an_archive_that_counts_are_noted(tmp_path):
         read(tmp_path, uncounted, "m.cdb")
 
 
+def test_nodes_of_no_element_in_a_deck_that_ends_with_its_step_are_noted(tmp_path):
+    """As in a deck of 8-node bricks with the middle nodes of 20-node ones; without *END STEP it may be cut short."""
+    extra = "*NODE\n" + "".join(f"{40 + k}, {k}., 0., 0.\n" for k in range(30))
+    mesh = read(tmp_path, inp(extra + "*STEP\n*FREQUENCY\n3\n*END STEP\n"), "m.inp")
+    assert "30 nodes belong to no element and are left out" in said(mesh)
+    with pytest.raises(faying.InputError, match=r"30 of \d+ nodes belong to no element"):
+        read(tmp_path, inp(extra), "m.inp")
+
+
 def test_an_element_in_two_groups_is_one(tmp_path):
     lines = [f"{n} {x} {y} {z}" for n, (x, y, z) in {**LOW, **UP}.items()]
     cells = []

@@ -186,6 +186,25 @@ def test_med(tmp_path, kinds, turned):
     same(faying.read_mesh(tmp_path / "m.med", unit="mm"), expected)
 
 
+@pytest.mark.parametrize("kind", ["quad9", "pyramid13"])
+def test_med_with_nodes_in_the_middle_of_sides(tmp_path, monkeypatch, kind):
+    """A brick of 20 x 20 x 10 mm whose top is a quadrangle of 9 nodes, 400 mm2; a pyramid is refused by its name."""
+    meshio = pytest.importorskip("meshio")
+    corners = np.array([[x, y, z] for z in (0, 10) for x, y in ((0, 0), (20, 0), (20, 20), (0, 20))], float)
+    middles = [[10, 0, 10], [20, 10, 10], [10, 20, 10], [0, 10, 10], [10, 10, 10]]
+    more = [[4, 5, 6, 7, *range(8, 13)]] if kind == "quad9" else [list(range(13))]
+    monkeypatch.setitem(meshio.med._med.meshio_to_med_type, "quad9", "QU9")
+    monkeypatch.setitem(meshio._mesh.topological_dimension, "pyramid13", 3)
+    mesh = meshio.Mesh(np.vstack([corners, middles]), [("hexahedron", [list(range(8))]), (kind, more)])
+    mesh.write(tmp_path / "m.med")
+    if kind == "pyramid13":
+        with pytest.raises(faying.ReadError, match="cells of type pyramid13 are not known"):
+            faying.read_mesh(tmp_path / "m.med", unit="mm")
+    else:
+        (face,) = faying.faces(tmp_path / "m.med", unit="mm").faces
+        assert face.area == pytest.approx(4e-4)
+
+
 @pytest.mark.parametrize("kinds", ALL, ids="-".join)
 def test_ansys(tmp_path, kinds):
     expected = two(kinds, gap=1e-4)

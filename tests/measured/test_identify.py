@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -164,6 +166,24 @@ def test_a_resonance_between_two_lines_is_said_to_be_so(synthetic):
     modes = identify_modes(frf).modes
     assert "narrower than the 1 Hz" in modes.notes[0][0]
     assert modes.notes[1] == ()
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_the_sign_of_time_is_found_from_the_poles(synthetic, noise):
+    """FRFs with exp(-i w t) are the complex conjugates; modes and fit are then those of FRFs with exp(i w t)."""
+    frf, _ = synthetic(MODES[:2], noise=noise)
+    right, turned = identify_modes(frf), identify_modes(replace(frf, values=frf.values.conj()))
+    np.testing.assert_allclose(turned.modes.frequencies, right.modes.frequencies, rtol=1e-9)
+    np.testing.assert_allclose(turned.modes.loss_factors, right.modes.loss_factors, rtol=1e-6)
+    np.testing.assert_allclose(turned.fit, right.fit, rtol=1e-6, atol=1e-9 * np.abs(right.fit).max())
+    assert right.frf.warnings == ()
+    assert "their conjugates are taken" in turned.frf.warnings[0]
+
+
+def test_coherence_that_is_not_used_is_said(synthetic):
+    frf, _ = synthetic(MODES[:1], outputs=1)
+    found = identify_modes(replace(frf, coherence=np.ones(frf.values.shape)))
+    assert "coherence" in found.frf.warnings[0]
 
 
 def test_real_frfs(measured_frfs):

@@ -84,6 +84,9 @@ G = 9.80665
         ("Frequency [Hz];Phase [rad];Amplitude [g/N]", (LINES, np.angle(TRUE), abs(TRUE) / G)),
         ("f/kHz,|H| mag/dB,phase/°", (LINES / 1e3, 20 * np.log10(abs(TRUE)), PHASE)),
         ("Freq [Hz],Mag [dB re 1 g/N],Phase [deg]", (LINES, 20 * np.log10(abs(TRUE) / G), PHASE)),
+        ("f [Hz],Accelerance [dB re 1e-6 (m/s^2)/(1 N)],Phase [deg]", (LINES, 20 * np.log10(abs(TRUE)) + 120, PHASE)),
+        ("Frequency kHz,dB re 1 m/s^2/N,Phase deg", (LINES / 1e3, 20 * np.log10(abs(TRUE)), PHASE)),
+        ("f [Hz],Mag dB (re 10 (m/s^2)/kN),Phase [deg]", (LINES, 20 * np.log10(abs(TRUE)) + 40, PHASE)),
         ("omega [rad/s]\tRe [mm/s^2/N]\tIm [mm/s^2/N]", (2 * np.pi * LINES, 1e3 * TRUE.real, 1e3 * TRUE.imag)),
         ("imag [m/(N*s^2)],real [m/(N*s^2)],frequency [rpm]", (TRUE.imag, TRUE.real, 60 * LINES)),
         ("# Frequency [kHz], H_re [m/s^2/kN], H_im [m/s^2/kN]", (LINES / 1e3, 1e3 * TRUE.real, 1e3 * TRUE.imag)),
@@ -120,7 +123,9 @@ def test_what_a_heading_leaves_open_is_noted(tmp_path):
         ("frequency [Hz],magnitude,phase", '"phase" states no unit of angle'),
         ("frequency [Hz],mag [dB re 20 uPa],phase [deg]", '"20 uPa" is not a reference'),
         ("frequency [Hz],real,magnitude", 'real" and "magnitude" of the heading make no FRF'),
-        ("frequency [Hz],real,imag,coherence", 'the column "coherence" is unknown'),
+        ("frequency [Hz],real,imag,noise", 'the column "noise" is unknown'),
+        ("frequency [Hz],real,imag,real,imag,coherence", "1 columns of coherence for 2 FRFs"),
+        ("frequency [Hz],mag [dB re 20],phase [deg]", "is not a reference"),
         ("time [s],real,imag", 'the column "time .s." is unknown'),
         ("omega,real,imag", '"omega" states no unit'),
         ("frequency [m],real,imag", '"frequency .m." states no unit'),
@@ -174,3 +179,30 @@ def test_complex_numbers_as_programs_write_them(tmp_path, line):
     file.write_text(f"(1+2j)\n{line}\n")
     frf = read_frf_text([file], quantity="receptance", frequency_step=1.0)
     assert frf.values[0, 0, 1] == complex(line.replace(" ", "").strip("()"))
+
+
+def test_a_column_of_coherence_goes_with_its_frf(tmp_path):
+    coherence = np.array([0.5, 0.9, 1.0, 0.75])
+    path = tmp_path / "frf.csv"
+    head = "Frequency [Hz];Coherence [-];Real [m/s^2/N];Imag [m/s^2/N]"
+    rows = [f"{f};{c};{v.real};{v.imag}" for f, c, v in zip(LINES, coherence, TRUE, strict=True)]
+    path.write_text("\n".join([head, *rows, ""]))
+    found = read_frf_text([path], quantity="accelerance")
+    np.testing.assert_array_equal(found.coherence, [[coherence]])
+    np.testing.assert_array_equal(found.values, [[TRUE]])
+    other = tmp_path / "other.csv"
+    other.write_text("\n".join(f"{f},{v.real},{v.imag}" for f, v in zip(LINES, TRUE, strict=True)) + "\n")
+    both = read_frf_text([other, path], quantity="accelerance")
+    np.testing.assert_array_equal(np.isnan(both.coherence[:, 0]), [[True] * 4, [False] * 4])
+
+
+def test_a_line_at_0_hz_without_a_number_is_left_out(tmp_path):
+    path = tmp_path / "frf.csv"
+    path.write_text("frequency [Hz],re [m/N],im [m/N]\n0,NaN,NaN\n1,2,3\n2,3,4\n")
+    found = read_frf_text([path], quantity="receptance")
+    np.testing.assert_array_equal(found.frequency, [1, 2])
+    np.testing.assert_array_equal(found.values[0, 0], [2 + 3j, 3 + 4j])
+    assert "the line at 0 Hz, which holds no number, is left out" in found.warnings[0]
+    path.write_text("frequency [Hz],re [m/N],im [m/N]\n0,1,2\n1,NaN,3\n2,3,4\n")
+    with pytest.raises(InputError, match="NaN at some of its frequencies"):
+        read_frf_text([path], quantity="receptance")

@@ -221,6 +221,26 @@ def test_the_quantity_is_taken_from_the_label_or_from_the_user(tmp_path):
         read_uff(raw(tmp_path / "c.uff", function(orddenom_spec_data_type=12))).frf()
 
 
+@pytest.mark.parametrize("kind", [9, 13])
+def test_reaction_and_excitation_are_forces(tmp_path, kind):
+    frf = read_uff(raw(tmp_path / "a.uff", function(orddenom_spec_data_type=kind))).frf()
+    np.testing.assert_allclose(frf.values[0, 0], function()["data"])
+
+
+@pytest.mark.parametrize("word", ["NaN", "Infinity"])
+def test_a_line_at_0_hz_without_a_number_is_left_out_of_all_frfs(tmp_path, word):
+    path = raw(tmp_path / "a.uff", function(), function(rsp_node=5, data=function()["data"] + 7))
+    text = path.read_text()
+    path.write_text(text.replace("7.00000000000e+00   0.00000000000e+00", f"{word:>17}{word:>20}", 1))
+    frf = read_uff(path).frf()
+    np.testing.assert_allclose(frf.frequency, np.arange(1.0, 20))
+    np.testing.assert_allclose(frf.values[:, 0], [function()["data"][1:], function()["data"][1:] + 7])
+    assert any("the line at 0 Hz" in words for words in frf.warnings)
+    path.write_text(text.replace("8.00000000000e+00   2.00000000000e+00", f"{word:>17}{word:>20}", 1))
+    with pytest.raises(ReadError, match="NaN or infinite"):
+        read_uff(path)
+
+
 def test_positions_in_the_units_of_the_file(tmp_path):
     path = raw(tmp_path / "a.uff", units(1000.0), nodes(), shape())
     assert read_uff(path).modes().positions[1] == pytest.approx((1e-3, 2e-3, 3e-3))

@@ -50,7 +50,13 @@ def test_three_m8_in_two_nameless_plates(made):
     assert len(study.joints) == 1
     assert study.parts == {"part1": "S355", "part2": "S355"}
     assert study.surface.scan.name == "study-surface.x3p"
-    for word in ("S355 steel", "synthetic milled", "70% of the proof load", "M8 for a hole of 9 mm", "no support"):
+    for word in (
+        "S355 steel",
+        "synthetic fine finish of 0.5 um",
+        "70% of the proof load",
+        "M8 for a hole of 9 mm",
+        "no support",
+    ):
         assert word in out
     text = path.read_text()
     assert text.count("ASSUMED") >= 9

@@ -1,12 +1,16 @@
 """Texts and archives as instruments and people write them: positions in matrices, more columns, missing heights."""
 
+import gzip
 import io
+import re
+import struct
 import zipfile
+import zlib
 
 import numpy as np
 import pytest
 
-from faying import ReadError, read_scan
+from faying import InputError, ReadError, read_scan
 from faying.surface.files.write import write_scan
 from faying.surface.scan import Scan
 
@@ -53,6 +57,136 @@ def test_positions_in_a_matrix_are_refused(tmp_path, x, y, match):
         table = np.vstack([x if y is None else np.append(0.0, x), table])
     with pytest.raises(ReadError, match=match):
         matrix(tmp_path / "m.csv", table)
+
+
+@pytest.mark.parametrize("corner", ["y/x", "um", ""])
+@pytest.mark.parametrize("mark", ["\t", ";", ","])
+@pytest.mark.parametrize("down", [1, -1])
+def test_positions_around_a_corner_are_no_heights(tmp_path, corner, mark, down):
+    """Tabs, semicolons and commas; rows from the top down are put in the order of their positions."""
+    x, y = 0.25 + STEP * np.arange(NX), -3 + 2 * STEP * np.arange(NY)
+    head = mark.join([corner, *(f"{value:g}" for value in x)])
+    content = head + "\n" + text(np.column_stack([y, WAVES])[::down], mark)
+    scan = read(tmp_path / "m.txt", content)
+    np.testing.assert_allclose(scan.heights, 1e-6 * WAVES, rtol=1e-7)
+    assert scan.spacing == pytest.approx((STEP * 1e-6, 2 * STEP * 1e-6))
+    sized = read(tmp_path / "m.txt", content, xy_unit=None, spacing=(2e-6, 3e-6))
+    np.testing.assert_array_equal(sized.heights, scan.heights)
+    assert sized.spacing == (2e-6, 3e-6)
+    with pytest.raises(InputError, match="give xy_unit"):
+        read(tmp_path / "m.txt", content, xy_unit=None)
+    with pytest.raises(InputError, match="leave out channel"):
+        read(tmp_path / "m.txt", content, channel="A")
+
+
+def test_scans_packed_by_gzip_are_read(tmp_path):
+    for name, content in (("a.csv", text(rows()).encode()), ("a.x3p", None)):
+        plain = tmp_path / name
+        if content is None:
+            write_scan(Scan(heights=1e-6 * WAVES, spacing=(1e-6, 2e-6)), plain)
+            units = {}
+        else:
+            plain.write_bytes(content)
+            units = {"xy_unit": "um", "z_unit": "um"}
+        packed = tmp_path / f"{name}.gz"
+        packed.write_bytes(gzip.compress(plain.read_bytes()))
+        scan = read_scan(packed, **units)
+        np.testing.assert_array_equal(scan.heights, read_scan(plain, **units).heights)
+        assert scan.source == str(packed)
+        packed.write_bytes(packed.read_bytes()[:-40])
+        with pytest.raises(ReadError, match=rf"{name}.gz: it is compressed, and damaged or cut short"):
+            read_scan(packed, **units)
+    (tmp_path / "b.csv.gz").write_bytes(gzip.compress(b"0,0,1\n1,0,2\n0,1,3\nx,y,z\n"))
+    with pytest.raises(ReadError, match=rf"^{re.escape(str(tmp_path))}/b.csv.gz: line 4"):
+        read_scan(tmp_path / "b.csv.gz", xy_unit="um", z_unit="um")
+
+
+def digital_surf(heights, step, unit=b"\xb5m", pieces=0):
+    """A file of Digital Surf of heights in whole nm, with points packed in so many pieces, none packed where 0."""
+    values = np.rint(heights * 1e9).astype("<i4")
+    (ny, nx), data = values.shape, values.tobytes()
+    head = struct.pack(
+        "<12s4H30s30s5H8xH", b"DSCOMPRESSED" if pieces else b"DIGITAL SURF", *[0, 1, 1, 2], *[b""] * 2, *[0] * 5, 32
+    )
+    head += struct.pack("<4iI3f", values.min(), values.max(), nx, ny, nx * ny, 1e6 * step, 1e6 * step, 1e-3)
+    head += struct.pack("<9s39x" + "16s" * 6, b"", *[unit] * 6) + struct.pack(
+        "<3f3H12x7Hf10x", 1, 1, 1, *[0] * 3, *[1] * 6, 2024, 0
+    )
+    head += struct.pack("<2H128s3f34x", 3, 5, b"", 0, 0, 0) + b"com" + b"priva"
+    if not pieces:
+        return head + data
+    cuts = [data[k * len(data) // pieces : (k + 1) * len(data) // pieces] for k in range(pieces)]
+    packed = [zlib.compress(cut) for cut in cuts]
+    sizes = b"".join(struct.pack("<2I", len(cut), len(some)) for cut, some in zip(cuts, packed, strict=True))
+    return head + struct.pack("<I", pieces) + sizes + b"".join(packed)
+
+
+@pytest.mark.parametrize("unit", [b"\xb5m", "µm".encode(), b"um"])
+def test_digital_surf_with_packed_points(tmp_path, unit):
+    pytest.importorskip("SurfaceTopography", reason="reads Digital Surf")
+    plain, path = tmp_path / "plain.sur", tmp_path / "packed.sur"
+    plain.write_bytes(digital_surf(1e-6 * WAVES, 2e-6, unit))
+    expected = read_scan(plain)
+    assert np.abs(expected.heights - 1e-6 * WAVES).max() < 0.51e-9
+    for pieces in (1, 3):
+        path.write_bytes(digital_surf(1e-6 * WAVES, 2e-6, unit, pieces))
+        scan = read_scan(path)
+        np.testing.assert_array_equal(scan.heights, expected.heights)
+        assert scan.spacing == pytest.approx((2e-6, 2e-6))
+    path.write_bytes(path.read_bytes()[:-30])
+    with pytest.raises(ReadError, match=r"packed.sur: it is compressed, and damaged or cut short"):
+        read_scan(path)
+
+
+def test_a_unit_that_is_none_is_said_with_its_file(tmp_path):
+    pytest.importorskip("SurfaceTopography", reason="reads Digital Surf")
+    path = tmp_path / "a.sur"
+    path.write_bytes(digital_surf(1e-6 * WAVES, 2e-6, b"V"))
+    with pytest.raises(InputError, match=r"a\.sur: its unit = .V. is not a unit like m"):
+        read_scan(path)
+
+
+def test_one_of_several_maps_of_heights_is_to_be_named(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    pytest.importorskip("SurfaceTopography", reason="reads HDF5")
+    path = tmp_path / "two.h5"
+    with h5py.File(path, "w") as file:
+        file["forward"], file["backward"] = WAVES, -WAVES
+    units = {"size": (NX * STEP * 1e-6, NY * STEP * 1e-6), "z_unit": "um"}
+    with pytest.raises(InputError, match=r"two.h5 holds 2 maps of heights: .*'forward'.*name one.*--channel"):
+        read_scan(path, **units)
+    with pytest.raises(InputError, match="there is no 'up'"):
+        read_scan(path, channel="up", **units)
+    found = [read_scan(path, channel=name, **units).heights for name in ("forward", "backward")]
+    np.testing.assert_array_equal(found[0], -found[1])
+    assert np.ptp(found[0]) == pytest.approx(1e-6 * np.ptp(WAVES))
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_containers_of_contact_engineering(tmp_path, count):
+    pytest.importorskip("SurfaceTopography", reason="reads containers")
+    lines = ["surfaces:", "- name: one", "  topographies:"]
+    path = tmp_path / "container.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        for k in range(count):
+            lines += [
+                f"  - name: scan {k}",
+                f"    datafile: {{original: {k}.txt}}",
+                "    unit: um",
+                "    size: [64, 48]",
+            ]
+            archive.writestr(f"{k}.txt", text((k + 1) * WAVES, " "))
+        archive.writestr("meta.yml", "\n".join(lines) + "\n")
+    if count > 1:
+        with pytest.raises(InputError, match="2 maps of heights: 'scan 0', 'scan 1'"):
+            read_scan(path)
+    scan = read_scan(path, channel=f"scan {count - 1}")
+    assert sorted(scan.heights.shape) == sorted(WAVES.shape)
+    assert np.nanstd(scan.heights) == pytest.approx(count * 1e-6 * WAVES.std())
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("meta.yml", "surfaces: 7\n")
+    with pytest.raises(ReadError, match="the container is damaged"):
+        read_scan(path)
 
 
 def test_matrices_of_heights_alone_are_read(tmp_path):
@@ -177,3 +311,7 @@ def test_uneven_steps_of_a_line_are_interpolated(tmp_path):
     straight = np.polyval(np.polyfit(np.arange(200), line.heights, 1), np.arange(200))
     assert np.abs(line.heights - straight).max() < 1e-15
     assert "the steps of the line are 5.5e-07 to 1.45e-06 m" in line.notes[0]
+    own = read(tmp_path / "own.csv", "x,z\n" + text(np.column_stack([x - x[0], 0.05 * (x - x[0])])[::-1]))
+    np.testing.assert_allclose(own.heights, line.heights, rtol=1e-12, atol=1e-20)
+    assert own.spacing == pytest.approx(line.spacing)
+    assert "the steps of the line are 5.5e-07 to 1.45e-06 m" in own.notes[0]

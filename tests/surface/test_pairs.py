@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from faying import InputError, Scan, fit_fractal, read_scan
+from faying import InputError, Scan, fit_fractal
 from faying.surface.combine import combine
-from faying.surface.files.crosscheck import compare, cross_check
-from faying.surface.files.write import write_scan
 from faying.surface.lay import find_lay
 from faying.surface.summits import cutoff_study, summits
 from faying.surface.synthesize import spectral
@@ -101,48 +99,3 @@ def test_a_plane_has_no_summit():
     ramp = Scan(heights=np.tile(np.exp(x / 1e-5) * 1e-6, (32, 1)), spacing=(1e-6, 1e-6))
     with pytest.raises(InputError, match="no summit"):
         summits(ramp)
-
-
-def test_the_other_reader_agrees_on_text_and_disagrees_in_words(tmp_path):
-    path = write_scan(spectral((20, 30), spacing=1e-6, D=2.4, Rq=1e-6), tmp_path / "a.csv", xy_unit="mm", z_unit="um")
-    scan = read_scan(path, "mm", "um")
-    (opinion,) = cross_check(scan, path, "mm", "um")
-    assert opinion.agrees
-    assert opinion.reader == "numpy"
-    (opinion,) = cross_check(scan.with_heights(scan.heights * 8), path, "mm", "um")
-    assert opinion.agrees is False
-    assert "heights 0.125 times ours" in opinion.text
-    path.write_text("nothing")
-    (opinion,) = cross_check(scan, path, "mm", "um")
-    assert opinion.agrees is None
-    assert "cannot read it" in opinion.text
-
-
-def test_comparison_names_points_and_spacing():
-    scan = spectral((20, 30), spacing=1e-6, D=2.4, Rq=1e-6)
-    seen = {"points": [30, 20], "spacing": [1e-3, 1e-6], "deviation": float(scan.heights.std())}
-    text = compare("other", scan, seen).text
-    assert "points [30, 20] against [20, 30]" in text
-    assert "spacing 0.001 m" in text
-
-
-def test_no_second_reader(tmp_path, monkeypatch):
-    from faying.surface.files import crosscheck
-
-    path = write_scan(spectral((20, 30), spacing=1e-6, D=2.4, Rq=1e-6), tmp_path / "a.x3p")
-    monkeypatch.setattr(crosscheck, "find_spec", lambda name: None)
-    with pytest.raises(InputError, match="no second reader"):
-        cross_check(read_scan(path), path)
-
-
-@pytest.mark.slow
-def test_surfalize_s_heights_of_the_zygo_file_are_eight_times_ours(scans):
-    pytest.importorskip("SurfaceTopography")
-    from importlib.util import find_spec
-
-    if find_spec("surfalize") is None:
-        pytest.skip("surfalize is not installed (group compare)")
-    path = scans / "surfacetopography" / "metropro-1.dat"
-    (opinion,) = cross_check(read_scan(path), path)
-    assert opinion.agrees is False
-    assert "heights 8 times ours" in opinion.text

@@ -15,7 +15,7 @@ from faying.text import json_text
 @click.command()
 @click.argument("step", metavar="FILE", type=PATH)
 @click.option("--unit", help='Unit of a mesh file\'s coordinates, such as "mm".')
-@click.option("--scan", type=PATH, help="Scan of one face (default: a synthetic milled one).")
+@click.option("--scan", type=PATH, help="Scan of one face (default: a synthetic one of a fine finish).")
 @click.option("--out", type=PATH, default="study.toml", show_default=True, help="The study file.")
 @click.option("--yes", is_flag=True, help="Ask nothing; assume steel, class 8.8, 70 % of the proof load, and print it.")
 @click.option("--force", is_flag=True, help="Replace files that exist.")
@@ -67,6 +67,6 @@ def asked(proposal: Any, scan: Path | None) -> Any:
         )
         preload = units.parse(answered, "N", name="preload")
     if scan is None and not proposal.alone:
-        named = click.prompt("scan of one face (empty for a synthetic milled one)", default="", show_default=False)
+        named = click.prompt("scan of one face (empty for a synthetic fine finish)", default="", show_default=False)
         scan = Path(named) if named.strip() else None
     return new.Answers(materials=materials, preload=preload, scan=scan)

@@ -71,7 +71,7 @@ def read(path: Path) -> RawMesh:
         top.notes.append(
             f"{path.name} ends in the middle of *{last.keyword} without an end of line: it may be cut short"
         )
-    return _merged(path, top, instances)
+    return replace(_merged(path, top, instances), counted=last is not None and last.keyword == "END STEP")
 
 
 def _merged(path: Path, top: Scope, instances: dict[str, Scope]) -> RawMesh:

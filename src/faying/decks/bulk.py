@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.raw import UPRIGHT_FIRST, check_included, read_text
+from faying.decks.raw import UPRIGHT_FIRST, check_included, named_by, read_text
 from faying.decks.vocabulary import nastran_kind
 from faying.errors import ReadError
 from faying.fe.elements import SOLIDS
@@ -78,7 +78,7 @@ def cards(path: Path, seen: tuple[Path, ...] = (), count: list[int] | None = Non
             yield "ENDDATA", [""], f"{path.name}, line {number}"
             return
         if found:
-            yield from cards(path.parent / found.group(1).strip(), (*seen, path.resolve()), count)
+            yield from cards(named_by(path, found.group(1).strip()), (*seen, path.resolve()), count)
             continue
         name, fields, where = first.rstrip("*").upper(), rest, f"{path.name}, line {number}"
     if name:

@@ -1,4 +1,4 @@
-"""Gmsh's mesh files, 2.0 to 2.2 and 4.1, text and binary: physical volumes are parts, physical surfaces are faces.
+"""Gmsh's mesh files, 1, 2.0 to 2.2 and 4.1, text and binary: physical volumes are parts, physical surfaces are faces.
 
 Formats after the Gmsh reference manual, section "Gmsh mesh file formats".
 """
@@ -13,7 +13,7 @@ from faying.errors import ReadError
 from faying.typing import Array, Index
 
 _KINDS = {4: ("tet4", 4), 5: ("hex8", 8), 6: ("wedge6", 6), 11: ("tet10", 10), 17: ("hex20", 20), 18: ("wedge15", 15)}
-_EARLIER = (b"2", b"2.0", b"2.1", b"2.2")  # their sections and lines of elements are the same
+_EARLIER = (b"1", b"2", b"2.0", b"2.1", b"2.2")  # their sections are the same
 _FACES = {2: 3, 3: 4, 9: 6, 16: 8}
 _PASSED = {1: 2, 8: 3, 15: 1}
 _UNKNOWN = {
@@ -90,9 +90,13 @@ class _Bytes:
         return np.asarray(self._take("f8", count), dtype=float)
 
 
-def _sections(path: Path) -> tuple[bool, dict[str, _Words | _Bytes]]:
-    """Whether the format is earlier than 4, and the sections that are read, which text and binary files share."""
+def _sections(path: Path) -> tuple[bytes, dict[str, _Words | _Bytes]]:
+    """The version of the format, and the sections that are read, which text and binary files share."""
     data = path.read_bytes()
+    if re.match(rb"\s*\$NOD\s", data):  # format 1 states no version
+        data = b"$MeshFormat\n1 0 8\n$EndMeshFormat\n" + data
+        for early, late in ((b"NOD", b"Nodes"), (b"ELM", b"Elements")):
+            data = data.replace(b"$" + early, b"$" + late).replace(b"$END" + early, b"$End" + late)
     if data[:200].split(b"$MeshFormat")[-1].split()[1:2] != [b"1"]:
         data = data.replace(b"\r\n", b"\n")
     if b"$MeshFormat" not in data[:200]:
@@ -125,7 +129,7 @@ def _sections(path: Path) -> tuple[bool, dict[str, _Words | _Bytes]]:
         piece = data[start + len(begin) : stop]
         binary = in_bytes and name != "PhysicalNames"
         out[name] = _Bytes(piece, name, order) if binary else _Words(piece, name)
-    return words[0] in _EARLIER, out
+    return words[0], out
 
 
 def _check_sections(data: bytes, path: Path) -> None:
@@ -168,13 +172,13 @@ def _names(words: _Words | _Bytes | None) -> dict[tuple[int, int], str]:
 
 def read(path: Path) -> RawMesh:
     """Read a .msh file, text or binary. Raises ReadError for other versions, and elements it does not know."""
-    early, sections = _sections(path)
+    version, sections = _sections(path)
     names = _names(sections.get("PhysicalNames"))
     nodes, elements = sections["Nodes"], sections["Elements"]
     with understood(f"{path} has something that is not a number"):
-        if early:
+        if version in _EARLIER:
             numbers, points = _nodes_22(nodes)
-            rows = _once(_elements_22(elements))
+            rows = _once(_elements_1(elements) if version == b"1" else _elements_22(elements))
         else:
             groups = _entities(sections.get("Entities"))
             numbers, points = _nodes_41(nodes)
@@ -314,6 +318,17 @@ def _count(code: int) -> int:
         f"{what} are not known; mesh with tetrahedra, wedges or bricks, of second order without nodes in the "
         "middle of faces (Mesh.SecondOrderIncomplete = 1)"
     )
+
+
+def _elements_1(words: _Words | _Bytes) -> Rows:
+    """Number, kind, physical group, entity, count of nodes, and the nodes of each element."""
+    out: Rows = []
+    for _ in range(words.count()):
+        number, code, group, _, count = words.ints(5)
+        if count != _count(code):
+            raise ReadError(f"element {number} has {count} nodes, where its kind has {_count(code)}")
+        out.append((number, code, [group] if group else [], words.ints(count)))
+    return out
 
 
 def _elements_22(words: _Words | _Bytes) -> Rows:

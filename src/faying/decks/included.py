@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+from faying.decks.raw import named_by
 from faying.file_kinds import ABAQUS, NASTRAN, kind_of
 
 # *INCLUDE and data lines from INPUT=, a keyword that goes on over lines included; INCLUDE 'file' of bulk data
@@ -18,7 +19,7 @@ def included(path: Path) -> tuple[Path, ...]:
     for file in files:  # those that it includes come to the end
         text = file.read_bytes()
         for match in (*_ABAQUS.finditer(text), *_NASTRAN.finditer(text)):
-            one = file.parent / match.group(1).decode(errors="replace").strip()
+            one = named_by(file, match.group(1).decode(errors="replace").strip())
             if "\0" not in str(one) and one.is_file() and one not in files and one.resolve() != path.resolve():
                 files.append(one)
     return tuple(files[1:])

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from faying.decks.deck import ContactProperty, JointDeck, grouped, real, reals
-from faying.decks.raw import check_included, read_text
+from faying.decks.raw import check_included, named_by, read_text
 from faying.errors import InputError, ReadError
 from faying.typing import Array, Index
 
@@ -77,7 +77,7 @@ def _lines(
         elif "INPUT" not in block.options:
             raise ReadError(f"{where}: *INCLUDE without INPUT=file")
         if block.keyword in {"INCLUDE", *DATA} and "INPUT" in block.options:
-            yield from _lines(path.parent / block.options["INPUT"], (*seen, path.resolve()), count)
+            yield from _lines(named_by(path, block.options["INPUT"]), (*seen, path.resolve()), count)
 
 
 def _keyword(line: str, where: str) -> Block:

@@ -53,8 +53,8 @@ class RawMesh:
     side_sets: name -> rows of (element number, side); face_elements: name -> arrays of node numbers (f, a); extra:
     numbers of nodes that only elements other than solids hold; references: nodes that constraints alone name; turned:
     nodes whose displacements are in directions of their own; notes: what was left out; pretensions: sections at which
-    bolts are tightened; counted: whether the file says how many nodes and elements it has, and has them. Raises
-    ReadError for numbers below 1 or without end, and places that are not finite.
+    bolts are tightened; counted: whether the file says how many nodes and elements it has, and has them, or where it
+    ends. Raises ReadError for numbers below 1 or without end, and places that are not finite.
     """
 
     numbers: Index
@@ -170,6 +170,22 @@ def read_text(path: Path, what: str) -> str:
         return path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as fault:
         raise ReadError(f"cannot read the {what} {path}: {fault.strerror or fault}") from None
+
+
+def named_by(path: Path, name: str) -> Path:
+    """The file that a mesh file names, relative to its own folder.
+
+    Where there is none, the one whose name differs in upper and lower case alone, as on file systems of Windows, which
+    also write backslashes.
+    """
+    there = path.parent / name
+    if "\0" in name or there.exists():
+        return there
+    there = path.parent
+    for step in Path(name.replace("\\", "/")).parts:
+        others = there.iterdir() if there.is_dir() and not (there / step).exists() else ()
+        there = next((one for one in others if one.name.lower() == step.lower()), there / step)
+    return there
 
 
 def check_included(path: Path, seen: tuple[Path, ...], count: list[int]) -> None:

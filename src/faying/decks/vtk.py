@@ -25,7 +25,7 @@ _KINDS = {
     "wedge": "wedge6",
     "wedge15": "wedge15",
 }
-_FACES = {"triangle", "triangle6", "quad", "quad8"}
+_FACES = {"triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8, "triangle7": 6, "quad9": 8}  # nodes on their edges
 _PASSED = {"vertex", "line", "line3", "polyline"}
 _ARRAYS = ("part", "body", "region", "domain", "material", "gmsh:physical", "CellEntityIds", "PartId", "MaterialId")
 
@@ -40,8 +40,9 @@ def read(path: Path) -> RawMesh:
         raise InputError(
             f"{path.name}: {kind} files are read by meshio; add --extra vtk to uv run, or pip install meshio"
         ) from None
-    # meshio 5.3.5 knows the name of this kind in every format, but not its dimension
-    meshio._mesh.topological_dimension.setdefault("wedge15", 3)
+    # meshio 5.3.5 knows the names of these kinds, but not their dimension, and not these names of MED
+    meshio._mesh.topological_dimension.update(wedge15=3, pyramid13=3, triangle7=2)
+    meshio.med._med.med_to_meshio_type.update(QU9="quad9", TR7="triangle7", H27="hexahedron27", P18="wedge18")
     try:
         found = meshio.read(path, file_format="vtu" if given is VTU else kind.lower())
     except (Exception, SystemExit) as fault:  # meshio raises many kinds
@@ -68,7 +69,7 @@ def read(path: Path) -> RawMesh:
         elif block.type in _FACES:
             extra.append(cells.ravel())
             for name, some in sets.of(number, "face", len(cells)):
-                faces.setdefault(name, []).append(cells[some])
+                faces.setdefault(name, []).append(cells[some, : _FACES[block.type]])
         elif block.type in _PASSED:
             extra.append(cells.ravel())
         else:

@@ -10,7 +10,7 @@ from faying.errors import InputError
 from faying.misuse import checked_call, shortened
 from faying.style import Summary
 from faying.text import listed
-from faying.typing import Array, Complex
+from faying.typing import Array, Complex, Mask
 
 Position = tuple[float, float, float]
 
@@ -60,6 +60,15 @@ def dofs(pairs: object) -> tuple[Dof, ...]:
         twice = next(d for d in out if out.count(d) > 1)
         raise InputError(f"the degree of freedom {twice} appears twice; give each point and direction once")
     return tuple(out)
+
+
+def without_static(frequency: Array, values: Complex, where: str) -> tuple[Mask, tuple[str, ...]]:
+    """Which spectral lines to use of FRFs (n, f): not the one at 0 Hz where one is NaN or infinite there; and a note.
+
+    Programs that divide by the frequency write no number at 0 Hz.
+    """
+    out = (frequency == 0) & ~np.isfinite(values).all(axis=0)
+    return ~out, (f"{where}: the line at 0 Hz, which holds no number, is left out",) if out.any() else ()
 
 
 @checked_call

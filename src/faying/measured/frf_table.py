@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from faying.columns import Cell, split_heading
+from faying.columns import Cell, is_unit, split_heading
 from faying.errors import InputError, ReadError
 from faying.measured.frf import UNITS
 from faying.measured.uff_units import DIMENSIONS, unit_factor
@@ -21,6 +21,7 @@ ROLES = {
     "imaginary": {"imaginary", "imag", "im", "imagpart", "i"},
     "magnitude": {"magnitude", "mag", "amplitude", "amp", "abs", "modulus"},
     "phase": {"phase", "angle", "arg"},
+    "coherence": {"coherence", "coh", "gamma^2", "γ^2"},
 }
 MAX_PHASE = 1e6  # rad
 PAIRS = {("real", "imaginary"): "parts", ("magnitude", "phase"): "polar"}
@@ -57,13 +58,20 @@ class Pair:
 
 @dataclass(frozen=True, kw_only=True)
 class FrfColumns:
-    """Columns of a table of FRFs: place and factor to Hz of the frequency, the pairs, and sentences for the reader."""
+    """Columns of a table of FRFs: place and factor to Hz of the frequency, the pairs, the places of their coherence
+    (none, or one for each pair), and sentences for the reader."""
 
     frequency: int
     hertz: float
     pairs: tuple[Pair, ...]
+    coherence: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
     named: bool = True
+
+    @property
+    def width(self) -> int:
+        """Numbers in a row."""
+        return 1 + 2 * len(self.pairs) + len(self.coherence)
 
 
 def plain_layout(width: int) -> FrfColumns:
@@ -83,12 +91,13 @@ def read_layout(line: str, quantity: str, where: str) -> FrfColumns:
     Raises:
         ReadError: a column is unknown or stands alone, a unit is unknown or of another quantity, a phase has no unit.
     """
-    cells = split_heading(line)
+    cells = tuple(_with_unit(cell, ("Hz", "rad", DIMENSIONS[quantity] + "/N")) for cell in split_heading(line))
     roles = [_role(cell, where) for cell in cells]
     lines = [k for k, role in enumerate(roles) if role in ("frequency", "omega")]
     if len(lines) != 1:
         raise ReadError(f'{where}: {len(lines)} columns of frequency in the heading "{line.strip()[:120]}"; {FORM}')
-    rest = [k for k in range(len(cells)) if k != lines[0]]
+    coherence = tuple(k for k, role in enumerate(roles) if role == "coherence")
+    rest = [k for k in range(len(cells)) if k != lines[0] and k not in coherence]
     notes: list[str] = []
     pairs = []
     for a, b in zip(rest[::2], [*rest[1::2], None], strict=False):
@@ -101,14 +110,31 @@ def read_layout(line: str, quantity: str, where: str) -> FrfColumns:
         pairs.append(_pair(cells, first, second, kind == "polar", quantity, where, notes))
     if not pairs:
         raise ReadError(f'{where}: no FRF in the heading "{line.strip()[:120]}"; {FORM}')
-    hertz = _hertz(cells[lines[0]], roles[lines[0]], where)
-    return FrfColumns(frequency=lines[0], hertz=hertz, pairs=tuple(pairs), notes=tuple(dict.fromkeys(notes)))
+    if coherence and len(coherence) != len(pairs):
+        raise ReadError(f"{where}: {len(coherence)} columns of coherence for {len(pairs)} FRFs; give each one, or none")
+    return FrfColumns(
+        frequency=lines[0],
+        hertz=_hertz(cells[lines[0]], roles[lines[0]], where),
+        pairs=tuple(pairs),
+        coherence=coherence,
+        notes=tuple(dict.fromkeys(notes)),
+    )
+
+
+def _with_unit(cell: Cell, units: tuple[str, ...]) -> Cell:
+    """The cell with the unit that its last word is, as in "Frequency kHz", where it states none in brackets."""
+    name, _, last = cell.text.rpartition(" ")
+    if cell.unit or not name or not any(is_unit(last, unit) for unit in units):
+        return cell
+    return Cell(text=cell.text, name=name.lower(), unit=last)
 
 
 def _role(cell: Cell, where: str) -> str:
-    """What one column is: the one role that its words name."""
+    """What one column is: the one role that its words name; one in decibels is a magnitude."""
     words = {*re.findall(r"[^\W\d_]+", cell.name), cell.name}
     found = [role for role, names in ROLES.items() if names & words]
+    if not found and re.match(r"db\b", cell.unit, re.IGNORECASE):
+        found = ["magnitude"]
     if "omega" in found and "frequency" in found:
         found.remove("frequency")
     if len(found) != 1:
@@ -167,17 +193,19 @@ def _pair(
 
 
 def _reference(text: str, cell: Cell, quantity: str, where: str, notes: list[str]) -> float:
-    """SI value at 0 dB, from words such as "re 1 m/s^2/N"."""
-    bare = re.sub(r"^(\s*(re|ref|rel)\b\.?:?)?\s*(1(\.0*)?\s+)?", "", text.strip(" ,;()")).strip()
-    if not bare:
+    """SI value at 0 dB, from words such as "re 1 m/s^2/N" or "(re 1e-6 (m/s^2)/(1 N))"."""
+    bare = re.sub(r"^\)?\s*[\[(]\s*(re\b.*)[\])]$", r"\1", text.strip(" ,;"))
+    bare = re.sub(r"^(re|ref|rel)\b[.:]*\s*", "", bare)
+    times, unit = re.fullmatch(r"(\d+\.?\d*(?:[eE][-+]?\d+)?)?\s*(.*)", bare).groups()  # type: ignore[union-attr]
+    if not unit and float(times or 1) == 1:
         notes.append(f'{where}: "{cell.text}" states no reference; 0 dB is taken as 1 {UNITS[quantity]}')
         return 1.0
-    factor = unit_factor(bare, DIMENSIONS[quantity] + "/N")
+    factor = unit_factor(re.sub(r"\(1(\.0*)?\s+", "(", unit), DIMENSIONS[quantity] + "/N")
     if factor is None:
         raise ReadError(
             f'{where}: "{cell.text}": "{bare}" is not a reference of {quantity}; write dB re 1 {DIMENSIONS[quantity]}/N'
         )
-    return factor
+    return float(times or 1) * factor
 
 
 def _factor(cell: Cell, quantity: str, where: str, notes: list[str]) -> float:

@@ -1,6 +1,6 @@
 """Modes out of FRFs without a hand on the mouse: poles, the rule for the stable ones, residues, intervals."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,12 @@ from faying.measured.poles import Poles, Rule, poles_by_order, tracks
 from faying.misuse import checked_call
 from faying.style import Summary
 from faying.typing import Array, Complex
+
+UNWEIGHED = "the coherence is read and not used: all spectral lines count alike"
+TURNED = (
+    "the poles of the FRFs grow in time, and those of their complex conjugates decay: they are written with "
+    "exp(-i w t), and their conjugates are taken"
+)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -47,6 +53,9 @@ def identify_modes(
     moved together to the best fit. Intervals take the wider of twice the scatter over the track and twice the standard
     error of that fit, and reach at least to the median, so that they show where the two estimates differ.
 
+    FRFs written with exp(-i w t) have no pole that decays; their complex conjugates are then taken, and a warning of
+    the result's `frf` says so.
+
     Args:
         frf: the measured functions, at evenly spaced spectral lines.
         band: lowest and highest frequency [Hz] to use (default: all lines above 0 Hz).
@@ -65,8 +74,14 @@ def identify_modes(
     """
     low, high = band or (0.0, np.inf)
     used = frf.band(max(low, np.nextafter(0, 1)), high)
+    if used.coherence is not None:
+        used = replace(used, warnings=(*used.warnings, UNWEIGHED))
     rule = rule or Rule.fitting(len(used.frequency))
     diagram, found = tracks(used, poles_by_order(used, rule.highest_order), rule)
+    if not found:  # in the other sign of time every pole grows, and none is stable
+        turned = replace(used, values=used.values.conj(), warnings=(*used.warnings, TURNED))
+        diagram, found = tracks(turned, poles_by_order(turned, rule.highest_order), rule)
+        used = turned if found else used
     if not found:
         raise InputError(
             f"no pole stays over {rule.orders} of {rule.highest_order} orders between {used.frequency[0]:g} and "

@@ -51,7 +51,11 @@ def read_test(
 
     file = read_uff(path, length_unit=length_unit)
     frf = file.frf(quantity=quantity) if any(f.kind == "FRF" for f in file.functions) or not file.shapes else None
-    modes = file.modes() if file.shapes else identify_modes(frf).modes  # type: ignore[arg-type]
+    if file.shapes or frf is None:
+        modes = file.modes()
+    else:
+        identified = identify_modes(frf)
+        modes, frf = identified.modes, identified.frf
     if points:
         there = read_points(points)
         modes = replace(modes, positions=there)

@@ -11,7 +11,7 @@ import numpy as np
 from faying.columns import split_heading, states_unit
 from faying.errors import InputError, ReadError
 from faying.files import end_of, refuse_decimal_comma
-from faying.measured.frf import FRF, Dof
+from faying.measured.frf import FRF, Dof, without_static
 from faying.measured.frf_table import FORM, FrfColumns, plain_layout, read_layout
 from faying.measured.uff_units import DIMENSIONS
 from faying.typing import Array, Complex
@@ -28,7 +28,8 @@ def read_frf_text(
     A file holds either one complex number on each line, as "(-0.07+2.6e-08j)", with spectral lines `frequency_step`
     [Hz] apart from 0 Hz on, or columns split by commas, semicolons or blanks. Their heading, the last line above the
     numbers, names them in any order, with units: frequency (Hz, kHz, rad/s, rpm), and for each FRF real and imaginary
-    part, or magnitude (or dB) and phase (deg or rad). Without a heading they are frequency [Hz], real, imaginary in SI.
+    part, or magnitude (or dB) and phase (deg or rad), maybe with a coherence. Without a heading they are frequency in
+    Hz, real and imaginary part in SI. A line at 0 Hz without a number is left out with a note.
 
     Raises:
         ReadError: where a line is neither, or the heading names what is not read.
@@ -37,14 +38,18 @@ def read_frf_text(
     frequency: Array | None = None
     notes: list[str] = []
     rows: list[Complex] = []
+    coherence: list[Array] = []
     for name in files:
         path = Path(name)
-        own, values, stated = _read(path, frequency_step, quantity)
-        notes += [*stated, *end_of(path)]
+        own, values, seen, stated = _read(path, frequency_step, quantity)
+        used, static = without_static(own, values, str(path))
+        own = own[used]
+        notes += [*stated, *static, *end_of(path)]
         if frequency is not None and (own.shape != frequency.shape or not np.allclose(own, frequency, rtol=1e-6)):
             raise InputError(f"{path}: its frequencies are not those of {files[0]}; give files of one test")
         frequency = own
-        rows += list(values)
+        rows += list(values[:, used])
+        coherence += list(seen[:, used])
     if frequency is None:
         raise InputError("no file was given; name one text file or more")
     return FRF(
@@ -53,13 +58,14 @@ def read_frf_text(
         outputs=tuple(Dof(i + 1, direction) for i in range(len(rows))),
         inputs=(Dof(1, direction),),
         quantity=quantity,
+        coherence=np.array(coherence)[:, None] if np.isfinite(coherence).any() else None,
         source=", ".join(str(f) for f in files),
         warnings=tuple(notes),
     )
 
 
-def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex, tuple[str, ...]]:
-    """Frequencies, values (functions, frequencies), and sentences for the reader."""
+def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex, Array, tuple[str, ...]]:
+    """Frequencies, values and coherence (functions, frequencies), NaN where none is given, and notes."""
     try:
         text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as fault:
@@ -81,12 +87,13 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
             if set(line) & set("()") and not BOTH_PARTS.fullmatch(line):
                 raise ReadError(f"{path}: {line[:60]!r} is not a complex number of two parts, as (-0.07+2.6e-08j)")
         values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
-        return np.arange(len(values), dtype=float) * step, np.array([values], dtype=np.complex128), ()
+        own = np.array([values], dtype=np.complex128)
+        return np.arange(len(values), dtype=float) * step, own, np.full(own.shape, np.nan), ()
     for line in lines:
         refuse_decimal_comma(line, str(path))
     table = [[_number(float, path, cell) for cell in re.split(r"[,;\s]+", line.rstrip(",; \t"))] for line in lines]
     layout = _layout(above, len(table[0]), quantity, path)
-    width = 1 + 2 * len(layout.pairs)
+    width = layout.width
     if not layout.pairs or {len(row) for row in table} != {width}:
         odd = next((len(row) for row in table if len(row) != width), len(table[0]))
         raise ReadError(
@@ -99,7 +106,8 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
     except ReadError as fault:
         raise ReadError(f"{path}: {fault}") from None
     frequency = layout.hertz * data[:, layout.frequency]
-    return frequency, functions, (*layout.notes, *_gaps(frequency, path))
+    coherence = data.T[list(layout.coherence)] if layout.coherence else np.full(functions.shape, np.nan)
+    return frequency, functions, coherence, (*layout.notes, *_gaps(frequency, path))
 
 
 def _gaps(frequency: Array, path: Path) -> list[str]:

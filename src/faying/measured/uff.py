@@ -217,7 +217,8 @@ def _function(data: dict[str, Any], where: str) -> Function:
             f"{where}: {len(values)} values where its header announces {count}; the file is damaged or was cut short, "
             "export it again"
         )
-    if not (np.all(np.isfinite(values)) and np.all(np.isfinite(x))):
+    moving = x != 0 if data["func_type"] == FRF_TYPE else np.full(len(x), True)  # `without_static` sees to 0 Hz
+    if not (np.all(np.isfinite(values[moving])) and np.all(np.isfinite(x))):
         raise ReadError(f"{where}: it has NaN or infinite values; measure or export that function again")
     if data["func_type"] in OVER_TIME and data["abscissa_spec_data_type"] == FREQUENCY:
         raise ReadError(
@@ -226,7 +227,7 @@ def _function(data: dict[str, Any], where: str) -> Function:
     return Function(
         kind=KINDS.get(data["func_type"], f"function of type {data['func_type']}"),
         x=x,
-        values=values,
+        values=np.where(np.isfinite(values), values, np.nan),
         output=_dof(data["rsp_node"], data["rsp_dir"]),
         input=_dof(data["ref_node"], data["ref_dir"]),
         unit=data["ordinate_axis_units_lab"],

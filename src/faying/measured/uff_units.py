@@ -12,7 +12,7 @@ from faying.units import scale
 
 # specific data types of data set 58 that concern FRFs
 MOTION = {8: "receptance", 11: "mobility", 12: "accelerance"}
-FORCE = 13
+FORCES = (9, 13)  # reaction and excitation
 DIMENSIONS = {"receptance": "m", "mobility": "m/s", "accelerance": "m/s^2"}
 FREQUENCY = 18
 NONE = ("", "NONE", "-", "1", "UNKNOWN", "UNDEFINED", "N/A")
@@ -106,7 +106,7 @@ def frf_scale(
     """
     top, bottom = data["ordinate_axis_units_lab"], data["orddenom_axis_units_lab"]
     named = quantity or MOTION.get(data["ordinate_spec_data_type"])
-    if data["orddenom_spec_data_type"] not in (0, 1, FORCE) and quantity is None:
+    if data["orddenom_spec_data_type"] not in (0, 1, *FORCES) and quantity is None:
         raise ReadError(
             f"{where}: a function relative to something that is not a force (type {data['orddenom_spec_data_type']}); "
             'leave it out, or give what it is, for example quantity="accelerance"'

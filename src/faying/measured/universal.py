@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faying.errors import ReadError
-from faying.measured.frf import FRF, Dof, Position
+from faying.measured.frf import FRF, Dof, Position, without_static
 from faying.measured.modes import ModeSet
 from faying.measured.uff_units import FileUnits, frf_scale, hertz
 from faying.style import Summary
@@ -104,16 +104,18 @@ class UniversalFile(Summary):
         for (o, i), (_, data) in pairs.items():
             values[outputs.index(o), inputs.index(i)] = data
         assert lines is not None
+        used, static = without_static(lines, np.array([data for _, data in pairs.values()]), self.source)
+        coherence = self._coherence(outputs, inputs, values.shape)
         return FRF(
-            frequency=lines,
-            values=values,
+            frequency=lines[used],
+            values=values[:, :, used],
             outputs=outputs,
             inputs=inputs,
             quantity=quantities.pop(),
-            coherence=self._coherence(outputs, inputs, values.shape),
+            coherence=None if coherence is None else coherence[:, :, used],
             positions=self.positions,
             source=self.source,
-            warnings=tuple(dict.fromkeys(notes)),
+            warnings=(*dict.fromkeys(notes), *static),
         )
 
     def _coherence(self, outputs: tuple[Dof, ...], inputs: tuple[Dof, ...], shape: tuple[int, ...]) -> Array | None:

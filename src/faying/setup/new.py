@@ -34,7 +34,7 @@ class Answers:
     Args:
         materials: part -> material of the catalogue; steel where a part is left out.
         preload: force of every bolt [N]; 70 % of the proof load of class 8.8 where None.
-        scan: scan of one face; a synthetic milled surface where None.
+        scan: scan of one face; a synthetic surface of a fine finish where None.
     """
 
     materials: Mapping[str, str] = field(default_factory=dict)
@@ -111,7 +111,7 @@ def new_study(
     Args:
         geometry: STEP file, or mesh file of another program whose faces have names.
         study: The file to write.
-        scan: Scan of one face; a synthetic milled one is written where None.
+        scan: Scan of one face; a synthetic one of a fine finish is written where None.
         materials: Material of all parts, or part -> material, of the catalogue; steel where a part is left out.
         preload: Force of each bolt [N], or text such as "12 kN"; 70 % of the proof load of class 8.8 where None.
         unit: Unit of a mesh file's coordinates, such as "mm".
@@ -296,8 +296,8 @@ def _parts(proposal: Proposal, answers: Answers, assumed: list[str]) -> str:
 def _surface(out: Path, answers: Answers, assumed: list[str]) -> str:
     if answers.scan is None:
         scan = scan_name(out)
-        assumed.append(f"the surface {scan}, a synthetic milled finish of 1 um rms height, on both faces: scan yours")
-        mark = "  # ASSUMED: synthetic, milled, 1 um rms height; put the scan of your face here"
+        assumed.append(f"the surface {scan}, a synthetic fine finish of 0.5 um rms height, on both faces: scan yours")
+        mark = "  # ASSUMED: synthetic, fine finish, 0.5 um rms height; put the scan of your face here"
     else:
         scan, mark = _relative(answers.scan, out), ""
         assumed.append("the other face of each joint is alike but unrelated (surface.counter)")

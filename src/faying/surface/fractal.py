@@ -1,5 +1,6 @@
 """D and G of a scan or profile by several estimators, each with an interval and the band it used."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from faying.checks import choice, flag, instance
@@ -61,8 +62,13 @@ def fit_fractal(
 
 def fit_all(scan: AreaHeights | LineHeights, **options: Any) -> dict[str, FractalFit | str]:
     """Run every estimator; where one fails its error text stands in place of the fit. Options as in `fit_fractal`."""
+    return fit_each(scan, METHODS, **options)
+
+
+def fit_each(scan: AreaHeights | LineHeights, methods: Iterable[str], **options: Any) -> dict[str, FractalFit | str]:
+    """Run some estimators as `fit_all` runs every one."""
     out: dict[str, FractalFit | str] = {}
-    for method in METHODS:
+    for method in methods:
         try:
             out[method] = fit_fractal(scan, method, **options)
         except FayingError as fault:

@@ -57,6 +57,18 @@ def smearing(spectrum: Spectrum, frequency: Array, slope: float) -> tuple[Array,
     return 1 + slope * (slope + 1) * x, (2 * slope + 1) * x
 
 
+FEWEST_BINS = 5  # two more than the three numbers of a power law with noise
+
+
+def _check_bins(frequency: Array, low: float, high: float) -> None:
+    """Raise NotConverged where too few bins of frequency [1/m] are in a band."""
+    if len(frequency) < FEWEST_BINS:
+        raise NotConverged(
+            f"the band of waves from {show(1 / high, 'm')} to {show(1 / low, 'm')} has {len(frequency)} bins of "
+            f"frequency, and a power law needs {FEWEST_BINS}; widen it, or scan a longer piece, or more finely"
+        )
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Bins:
     """The bins of one fit: frequency, ln(f/pivot), two-sided density y (white noise is flat in it), weight."""
@@ -72,8 +84,7 @@ class _Bins:
     def of(cls, spectrum: Spectrum, low: float, high: float) -> "_Bins":
         use = (spectrum.frequency >= low) & (spectrum.frequency <= high) & (spectrum.density > 0)
         f = spectrum.frequency[use]
-        if len(f) < 5:
-            raise NotConverged(f"only {len(f)} bins of frequency are in the band {low:.4g} .. {high:.4g} 1/m; widen it")
+        _check_bins(f, low, high)
         weight = 1 / spectrum.spread[use] ** 2
         pivot = float(np.exp(np.average(np.log(f), weights=weight)))
         return cls(
@@ -187,8 +198,7 @@ def fit_lines(spectrum: Spectrum, low: float, high: float) -> FittedPowerLaw:
     """
     use = (spectrum.frequency >= low) & (spectrum.frequency <= high)
     f = spectrum.frequency[use]
-    if len(f) < 5:
-        raise NotConverged(f"only {len(f)} bins of frequency are in the band {low:.4g} .. {high:.4g} 1/m; widen it")
+    _check_bins(f, low, high)
     density, width = spectrum.density[use], spectrum.width[use]
     x = np.log(f)
     pivot = float(np.exp((x[0] + x[-1]) / 2))

@@ -73,7 +73,7 @@ def command(
         save(figure.identified(found), plot)
     if out:
         write_uff(out, found.modes, frf)
-    for line in frf.warnings:
+    for line in found.frf.warnings:
         click.echo(f"note: {line}", err=True)
     click.echo(json_text(document(found)) if as_json else table(found))
 

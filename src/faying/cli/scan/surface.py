@@ -23,8 +23,8 @@ from faying.units import lengths, show
 @click.option("--keep-spikes", is_flag=True, help="Leave single outlying points in.")
 @click.option("--size", metavar="LENGTHS", help='Size of a scan whose file states none, for example "4 mm x 3 mm".')
 @click.option("--spacing", metavar="LENGTHS", help='Distance of its points, in place of --size, for example "5 um".')
+@click.option("--channel", help="Name of the map of heights, where the file holds several.")
 @click.option("--self-test", "test", is_flag=True, help="Correct for bias by synthetic surfaces made like this one.")
-@click.option("--cross-check", "check", is_flag=True, help="Compare with what other installed readers make of FILE.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--plot", type=NamedPath(dir_okay=False), help="Write a figure (png, pdf, svg).")
 def command(
@@ -33,35 +33,27 @@ def command(
     z_unit: str | None,
     size: str | None,
     spacing: str | None,
+    channel: str | None,
     method: str,
     degree: int,
     keep_spikes: bool,
     test: bool,
-    check: bool,
     as_json: bool,
     plot: str | None,
 ) -> None:
     """Roughness, fractal dimension D and fractal roughness G of the scan in FILE."""
     from faying.surface.files.read import read_scan
     from faying.surface.form import prepared
-    from faying.surface.fractal import fit_all, fit_fractal
-    from faying.surface.fractal_fit import FractalFit
+    from faying.surface.fractal import fit_each
     from faying.surface.roughness import roughness
 
     given = {"size": size, "spacing": spacing}
     sizes: dict[str, Any] = {name: lengths(text, name=f"--{name}") for name, text in given.items() if text}
-    scan = read_scan(file, xy_unit=xy_unit, z_unit=z_unit, **sizes)
+    scan = read_scan(file, xy_unit=xy_unit, z_unit=z_unit, channel=channel, **sizes)
     ready = prepared(scan, degree=degree, spikes=not keep_spikes)
-    options: dict[str, Any] = {"degree": degree, "spikes": not keep_spikes}
-    if method == "all":
-        fits: dict[str, FractalFit | str] = fit_all(scan, self_test=test, **options)
-    else:
-        fits = {method: fit_fractal(scan, method, self_test=test, **options)}
+    methods = METHODS if method == "all" else [method]
+    fits = fit_each(scan, methods, self_test=test, degree=degree, spikes=not keep_spikes)
     document = describe(scan, ready, roughness(ready), fits)
-    if check:
-        from faying.surface.files.crosscheck import cross_check
-
-        document["cross_check"] = [vars(o) for o in cross_check(scan, file, xy_unit, z_unit)]
     if plot:
         from faying.surface.figure import overview
 
@@ -123,14 +115,13 @@ def table(document: dict[str, Any]) -> str:
     rows = [["method", *tables.FRACTAL[:-1], f"implied {q}"]]
     for name, fit in document["fits"].items():
         if "error" in fit:
-            words.append(f"  {name}: {fit['error']}")
+            words.append(f"  {name}: no D and G: {fit['error']}")
             continue
         rows.append([name, *tables.fractal(fit)])
         words += [f"  {name}: {word}" for word in fit["warnings"]]
     convention = next((f["convention"] for f in document["fits"].values() if "error" not in f), "")
-    lines += [f"  {line}".rstrip() for line in tables.text(rows, width=WIDTH - 2).splitlines()]
-    lines += ["", f"  {convention}", *words]
-    for seen in document.get("cross_check", ()):
-        verdict = {True: "agrees", False: "DIFFERS", None: "no opinion"}[seen["agrees"]]
-        lines.append(f"  cross-check by {seen['reader']}: {verdict}: {seen['text']}")
+    if convention:
+        lines += [f"  {line}".rstrip() for line in tables.text(rows, width=WIDTH - 2).splitlines()]
+        lines += ["", f"  {convention}"]
+    lines += words
     return folded("\n".join(lines))

@@ -23,8 +23,9 @@ from faying.surface.scan import Profile, Scan
 class SurfaceChoice:
     """The rough surface: a scan with its units and estimator, or D, G [m] and scan_area [m2] as given.
 
-    size or spacing [m]: of a scan whose file states neither. counter: the other face, the file of its scan, "same" or
-    "smooth"; where D and G are given in place of a scan they are those of both faces together.
+    size or spacing [m]: of a scan whose file states neither. channel: of a file with several maps of heights. counter:
+    the other face, the file of its scan, "same" or "smooth"; where D and G are given in place of a scan they are those
+    of both faces together.
     """
 
     scan: Path | None = None
@@ -32,6 +33,7 @@ class SurfaceChoice:
     z_unit: str | None = None
     size: tuple[float, float] | float | None = None
     spacing: tuple[float, float] | float | None = None
+    channel: str | None = None
     method: str = "psd"
     D: float | None = None
     G: float | None = None
@@ -60,10 +62,11 @@ class SurfaceChoice:
         if self.scan is None:
             inputs = FractalSurface(D=self.D or 0.0, G=self.G or 0.0, scan_area=self.scan_area or 0.0)
             return Surface(faces=RoughPair(face=inputs, stated="given in the study"), origin="given in the study")
-        scan = read_scan(self.scan, xy_unit=self.xy_unit, z_unit=self.z_unit, size=self.size, spacing=self.spacing)
+        given: dict[str, Any] = {"xy_unit": self.xy_unit, "z_unit": self.z_unit, "channel": self.channel}
+        scan = read_scan(self.scan, size=self.size, spacing=self.spacing, **given)
         other: Counter = self.counter
         if self.counter not in COUNTERS:
-            found = read_scan(Path(self.counter), xy_unit=self.xy_unit, z_unit=self.z_unit)
+            found = read_scan(Path(self.counter), **given)
             if not isinstance(found, Scan):
                 raise InputError(f"{Path(self.counter).name} is a line scan; two faces need two areal scans")
             other = found
@@ -203,6 +206,7 @@ SURFACE: Declared = {
     "z_unit": Key.length_unit("Unit of the heights, where the file states none."),
     "size": _lengths("Size of the scan, where the file states neither size nor spacing."),
     "spacing": _lengths("Spacing of the points, where the file states neither size nor spacing."),
+    "channel": Key.text("Name of the map of heights, where the file of the scan holds several.", None),
     "method": Key.text("Estimator of D and G.", "psd", examples=lambda: METHODS),
     "D": replace(
         Key.number("Fractal dimension of both faces together, between 2 and 3."), parameter=FRACTAL["D"]

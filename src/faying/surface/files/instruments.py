@@ -2,20 +2,21 @@
 
 import warnings
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from faying.columns import plain_unit
 from faying.errors import FayingError, InputError, ReadError
+from faying.surface.files.text import uneven_line
 from faying.surface.heights import ASK_SIZE, ASK_UNITS, Instrument, check_points
 from faying.surface.scan import Profile, Scan
 from faying.text import few
 from faying.units import scale
 
-ROUNDED = 0.1  # of a step: how far the positions of a line may be off an even grid
 _BROKEN = (
     "SurfaceTopography, which reads formats of instruments, is installed but does not start ({fault}); install a "
     "version for the installed numpy"
@@ -53,12 +54,15 @@ class _Content:
     positions: Any
 
 
-def read(file: Path, xy_unit: str | None, z_unit: str | None, steps: Steps | None) -> Scan | Profile:
+def read(
+    file: Path, xy_unit: str | None, z_unit: str | None, steps: Steps | None, channel: str | None
+) -> Scan | Profile:
     """Read a file by SurfaceTopography; `steps` gives the spacing [m] from the numbers of points (nx, ny).
 
-    ReadError where the library is not installed or cannot read the file.
+    ReadError where the library is not installed or cannot read the file, InputError where the file holds several maps
+    of heights and `channel` names none of them.
     """
-    content = _content(file)
+    content = _content(file, channel)
     if content.sizes is None and steps is None:
         raise InputError(f"{file}: the file does not state its physical size; {ASK_SIZE}")
     if content.unit is None:
@@ -70,8 +74,8 @@ def read(file: Path, xy_unit: str | None, z_unit: str | None, steps: Steps | Non
     else:
         if xy_unit is not None or z_unit is not None:
             raise InputError(f"{file}: the file states its units ({content.unit}); leave out xy_unit and z_unit")
-        unit = str(content.unit).replace("µ", "u").replace("μ", "u").replace("Å", "angstrom")
-        xy = z = scale(unit, "m", name="unit")
+        unit = plain_unit(str(content.unit)).replace("Å", "angstrom")
+        xy = z = scale(unit, "m", name=f"{file}: its unit")
     if content.sizes is None:
         assert steps is not None
         counts = content.heights.shape
@@ -85,7 +89,7 @@ def read(file: Path, xy_unit: str | None, z_unit: str | None, steps: Steps | Non
         raise ReadError(f"{file}: {fault}") from fault
 
 
-def _content(file: Path) -> _Content:
+def _content(file: Path, wanted: str | None) -> _Content:
     library = _library()
     if library is None:
         raise ReadError(
@@ -96,49 +100,87 @@ def _content(file: Path) -> _Content:
         kind.format() for kind in library.IO.readers if file.suffix.lower().lstrip(".") in kind.file_extensions()
     ]
     faults: list[Exception] = []
-    for kind in (None, *by_name):  # what the content seems to be; a .nms may seem to be MATLAB's, without any data
-        try:
-            return _opened(file, library, kind)
-        except FayingError:
-            raise
-        except Exception as fault:  # a reader of thirty formats fails in as many ways
-            faults.append(fault)
-    first = str(faults[0]).strip().splitlines()
-    reason = first[0] if first else type(faults[0]).__name__
-    raise ReadError(
-        f"{file}: of no format that can be read, or damaged ({type(faults[0]).__name__}: {reason}){_packed(file)}"
-    ) from faults[0]
-
-
-def _opened(file: Path, library: Any, kind: str | None) -> _Content:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        with library.open_topography(str(file), format=kind) as reader:
-            channel = reader.default_channel
-            stated = channel.physical_sizes is not None
-            points = channel.nb_grid_pts
-            if points is not None and len(points) > 0:
-                check_points(str(file), float(np.prod([float(n) for n in points])))
-            topography = channel.topography(**({} if stated else {"physical_sizes": channel.nb_grid_pts}))
-            heights: Any = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan)
-            return _Content(
-                heights=heights,
-                sizes=topography.physical_sizes if stated else None,
-                unit=topography.unit,
-                info=dict(topography.info or {}),
-                positions=None if topography.is_uniform else np.asarray(topography.positions(), float),
-            )
+        if {"meta.yml", "index.json"} & {*_members(file)}:
+            return _contained(file, wanted)
+        for kind in (None, *by_name):  # what the content seems to be; a .nms may seem to be MATLAB's, without any data
+            try:
+                return _opened(file, library, kind, wanted)
+            except FayingError:
+                raise
+            except Exception as fault:  # a reader of thirty formats fails in as many ways
+                faults.append(fault)
+    known = next((fault for fault in faults if type(fault).__name__ != "CannotDetectFileFormat"), None)
+    reason = "" if known is None else f" ({type(known).__name__}: {(str(known).strip() or '-').splitlines()[0]})"
+    names = _members(file)
+    packed = f"; it is a zip archive of {len(names)} files ({few(names, 3)}): unpack it and give one of them"
+    raise ReadError(f"{file}: of no format that can be read, or damaged{reason}{packed if names else ''}") from faults[
+        0
+    ]
 
 
-def _packed(file: Path) -> str:
-    """What a zip archive of no known format holds, in words; "" for other files."""
+def _opened(file: Path, library: Any, kind: str | None, wanted: str | None) -> _Content:
+    """The map of heights of a file, by its format; the library calls maps of other things heights without a unit."""
+    with library.open_topography(str(file), format=kind) as reader:
+        maps = [one for one in reader.channels if one.is_height_channel and not isinstance(one.unit, tuple)]
+        maps = maps or [reader.default_channel]
+        channel = maps[_chosen(file, [one.channel_id for one in maps], wanted)]
+        stated = channel.physical_sizes is not None
+        points = channel.nb_grid_pts
+        if points is not None and len(points) > 0:
+            check_points(str(file), float(np.prod([float(n) for n in points])))
+        return _of(channel.topography(**({} if stated else {"physical_sizes": channel.nb_grid_pts})), stated=stated)
+
+
+def _contained(file: Path, wanted: str | None) -> _Content:
+    """One measurement of a container of contact.engineering."""
+    from SurfaceTopography.Container.IO import CEReader
+
+    try:
+        reader = CEReader(str(file))
+        places = [(k, i) for k in range(reader.nb_containers) for i in range(len(reader.members(k)))]
+        names = [f"{k + 1}: " * (reader.nb_containers > 1) + reader.members(k)[i].name for k, i in places]
+        surface, place = places[_chosen(file, names, wanted)]
+        return _of(reader.container(surface)[place], stated=True)
+    except FayingError:
+        raise
+    except Exception as fault:
+        raise ReadError(f"{file}: the container is damaged ({type(fault).__name__}: {fault})") from fault
+
+
+def _chosen(file: Path, names: Sequence[str], wanted: str | None) -> int:
+    """The place of the map of heights that the caller wants; InputError where the name is missing or unknown."""
+    if wanted in names:
+        return names.index(wanted)
+    if wanted is None and len(names) == 1:
+        return 0
+    shown = ", ".join(map(repr, names))
+    raise InputError(
+        f"{file} holds {len(names)} maps of heights: {shown}; "
+        f"{'name one' if wanted is None else f'there is no {wanted!r}, name one of these'}, for example "
+        f'channel = "{names[0]}" (--channel "{names[0]}")'
+    )
+
+
+def _of(topography: Any, *, stated: bool) -> _Content:
+    """What a topography of the library holds; stated: whether its file states the size."""
+    return _Content(
+        heights=np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan),
+        sizes=topography.physical_sizes if stated else None,
+        unit=topography.unit,
+        info=dict(topography.info or {}),
+        positions=None if topography.is_uniform else np.asarray(topography.positions(), float),
+    )
+
+
+def _members(file: Path) -> list[str]:
+    """The names of the files in a zip archive; none of other files."""
     try:
         with zipfile.ZipFile(file) as archive:
-            names = archive.namelist()
+            return archive.namelist()
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError):
-        return ""
-    shown = few(names, 3)
-    return f"; it is a zip archive of {len(names)} files ({shown}): unpack it and give one of them"
+        return []
 
 
 def _scan(file: Path, content: _Content, xy: float, z: float) -> Scan | Profile:
@@ -150,23 +192,12 @@ def _scan(file: Path, content: _Content, xy: float, z: float) -> Scan | Profile:
         nx, ny = heights.shape
         spacing = (sizes[0] * xy / nx, sizes[1] * xy / ny)
         return Scan(heights=heights.T * z, spacing=spacing, source=str(file), instrument=instrument)
-    notes: tuple[str, ...] = ()
     if positions is None:
-        step = sizes[0] / len(heights)
-    else:
-        gaps = np.diff(positions)
-        step = float(np.ptp(positions)) / (len(positions) - 1)
-        if gaps.min() <= 0:
-            raise ReadError(f"{file}: the positions of the line scan do not increase")
-        # positions rounded in the file differ a little from an even grid; heights between larger gaps are interpolated
-        even = positions[0] + step * np.arange(len(positions))
-        if np.abs(positions - even).max() > ROUNDED * step:
-            heights = np.interp(even, positions, heights)
-            notes = (
-                f"{file}: the steps of the line are {gaps.min() * xy:.3g} to {gaps.max() * xy:.3g} m; heights are "
-                f"interpolated at even steps of {step * xy:.3g} m",
-            )
-    return Profile(heights=heights * z, spacing=step * xy, source=str(file), instrument=instrument, notes=notes)
+        spacing_x = sizes[0] * xy / len(heights)
+        return Profile(heights=heights * z, spacing=spacing_x, source=str(file), instrument=instrument)
+    if np.diff(positions).min() <= 0:
+        raise ReadError(f"{file}: the positions of the line scan do not increase")
+    return replace(uneven_line(file, positions * xy, heights * z), instrument=instrument)
 
 
 def _instrument(info: dict[str, Any]) -> Instrument:
@@ -177,7 +208,7 @@ def _instrument(info: dict[str, Any]) -> Instrument:
         entry = parameters.get(name)
         if isinstance(entry, dict) and entry.get("value") is not None:
             try:
-                values[name] = float(entry["value"]) * scale(str(entry.get("unit", "m")).replace("µ", "u"), "m")
+                values[name] = float(entry["value"]) * scale(plain_unit(str(entry.get("unit", "m"))), "m")
             except (InputError, TypeError, ValueError):
                 continue
     return Instrument(name=str(data.get("name") or ""), **values)

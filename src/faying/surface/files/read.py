@@ -10,6 +10,7 @@ from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
 from faying.file_kinds import X3P, kind_held, kind_of, taken
 from faying.files import end_of
+from faying.surface.files.packed import unpacked
 from faying.surface.files.text import TextLayout
 from faying.surface.heights import ASK_SIZE, ASK_UNITS, sides_of, steps_of
 from faying.surface.scan import Profile, Scan
@@ -57,11 +58,13 @@ def read_scan(
     *,
     size: Lengths = None,
     spacing: Lengths = None,
+    channel: str | None = None,
 ) -> Scan | Profile:
     """Read a measured surface.
 
     X3P (ISO 25178-72) and plain text (x,y,z on a regular grid, x,z of a line, or a matrix of heights) are read by
-    Faying itself, all other formats by SurfaceTopography when it is installed (`pip install SurfaceTopography`).
+    Faying itself, all other formats by SurfaceTopography when it is installed (`pip install SurfaceTopography`), zip
+    containers of contact.engineering among them. Files packed by gzip (.gz) are unpacked.
 
     Args:
         path: the file.
@@ -70,12 +73,13 @@ def read_scan(
         size: length of the scan, one or (x, y), [m] or text with a unit, where the file states none
             or one that cannot be.
         spacing: distance between points [m], in place of `size`.
+        channel: name of the map of heights, where the file holds several.
 
     Returns:
         Scan, or Profile where the file holds one line.
 
     Raises:
-        InputError: when a unit or a size is needed and not given, or given against the file.
+        InputError: when a unit, a size or a channel is needed and not given, or given against the file.
         ReadError: for files that are missing, damaged, of an unknown format, or of implausible size.
     """
     file = checked_path(path, "path of a scan")
@@ -84,18 +88,21 @@ def read_scan(
             scale(instance(unit, str, name, 'give the name of a unit as text, "mm" say'), "m", name=name)
     lateral = Lateral.of(size, spacing)
     _check_there(file)
-    if kind_held(file) is not None:  # what is not known may be of an instrument that SurfaceTopography knows
-        taken(file, "scan", "numbers")
-    if kind_of(file) is X3P:
-        from faying.surface.files import x3p
+    with unpacked(file) as plain:
+        if kind_held(plain) is not None:  # what is not known may be of an instrument that SurfaceTopography knows
+            taken(plain, "scan", "numbers")
+        if kind_of(plain) is X3P:
+            from faying.surface.files import x3p
 
-        _no_units(file, xy_unit, z_unit)
-        scan: Scan | Profile = x3p.read(file)
-    else:
-        scan = _text_or_other(file, xy_unit, z_unit, lateral)
-    scan = without_sentinels(_resized(scan, lateral))
-    plausible(scan)
-    return replace(scan, notes=(*scan.notes, *end_of(file)))
+            _no_units(plain, xy_unit, z_unit)
+            _no_channel(plain, channel)
+            scan: Scan | Profile = x3p.read(plain)
+        else:
+            scan = _text_or_other(plain, (xy_unit, z_unit), lateral, channel)
+        scan = without_sentinels(_resized(scan, lateral))
+        plausible(scan)
+        notes = [note.replace(str(plain), str(file)) for note in (*scan.notes, *end_of(plain))]
+    return replace(scan, source=str(file), notes=tuple(notes))
 
 
 def _check_there(file: Path) -> None:
@@ -118,16 +125,24 @@ def _no_units(file: Path, xy_unit: str | None, z_unit: str | None) -> None:
         raise InputError(f"{file}: the file states its units; leave out xy_unit and z_unit")
 
 
-def _text_or_other(file: Path, xy_unit: str | None, z_unit: str | None, lateral: Lateral) -> Scan | Profile:
+def _no_channel(file: Path, channel: str | None) -> None:
+    if channel is not None:
+        raise InputError(f"{file}: the file holds one map of heights; leave out channel")
+
+
+def _text_or_other(
+    file: Path, units: tuple[str | None, str | None], lateral: Lateral, channel: str | None
+) -> Scan | Profile:
     from faying.surface.files import instruments, text
 
     try:
         layout = text.layout(file)
         if layout is None:
-            return instruments.read(file, xy_unit, z_unit, lateral.steps if lateral else None)
+            return instruments.read(file, *units, lateral.steps if lateral else None, channel)
+        _no_channel(file, channel)
         if layout.units is not None:
-            _no_units(file, xy_unit, z_unit)
-        return text.read(file, layout, _scales(file, layout, xy_unit, z_unit, lateral), lateral.steps)
+            _no_units(file, *units)
+        return text.read(file, layout, _scales(file, layout, *units, lateral), lateral.steps if lateral else None)
     except FayingError:
         raise
     except (ValueError, MemoryError, OverflowError) as fault:
@@ -141,7 +156,7 @@ def _scales(
     if layout.units is not None:
         x, y, z = layout.units
         return x, y, z
-    if layout.matrix:
+    if layout.matrix and (lateral or layout.across is None):
         if not lateral or z_unit is None:
             raise InputError(
                 f"{file}: a matrix of heights states neither its size nor a unit; {ASK_SIZE}, and z_unit, for example "

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.columns import line_count, split_heading, table_in_one_go
+from faying.columns import line_count, mark_of, plain_unit, split_heading, table_in_one_go
 from faying.errors import ReadError
 from faying.files import refuse_decimal_comma
 from faying.surface.heights import BYTES, check_points
@@ -42,25 +42,28 @@ def _row(line: str, columns: int = 2) -> list[float] | None:
 class TextLayout:
     """How a text file is laid out: numbers in a row (2: x,z; 3: x,y,z; more: a matrix of heights), lines of heading,
     metres per unit of x, y, z where the heading states them, places of x, y, z (or x, z) in a row; size (x, y) [m] of
-    a matrix that states it."""
+    a matrix that states it; across: positions of its columns, where they stand above it, as those of its rows then do
+    before each row."""
 
     columns: int
     heading: int
     units: tuple[float, float, float] | None = None
     order: tuple[int, ...] | None = None
     size: tuple[float, float] | None = None
+    across: tuple[float, ...] | None = None
 
     @property
     def matrix(self) -> bool:
-        """Whether the numbers are heights alone."""
+        """Whether the numbers are heights, with their positions or without."""
         return self.columns > 3 or self.size is not None
 
 
 def layout(path: Path) -> TextLayout | None:
     """Return the layout of a text of numbers, None for any other file.
 
-    A heading is one line such as "x [mm],y [mm],z [um]"; a matrix has none and four numbers in a row or more, or the
-    comments of Gwyddion, which state size and unit. Raises ReadError for decimal commas.
+    A heading is one line such as "x [mm],y [mm],z [um]"; a matrix has four numbers in a row or more, and either no
+    heading, or a row and a column of positions with a word or nothing in their corner, or the comments of Gwyddion,
+    which state size and unit. Raises ReadError for decimal commas.
     """
     with path.open("rb") as handle:
         head = handle.read(65536)
@@ -73,6 +76,9 @@ def layout(path: Path) -> TextLayout | None:
     rows = lines[1:] if heading else lines
     for line in rows[:1]:
         refuse_decimal_comma(line, str(path))
+    across = None if heading else _positions_above(rows[: -1 or None])
+    if across is not None:
+        return TextLayout(columns=len(across) + 1, heading=1, across=across)
     found = [_row(line) for line in (rows[:-1] or rows)[:31]]
     if not found or found[0] is None:
         return None
@@ -90,6 +96,23 @@ def layout(path: Path) -> TextLayout | None:
         _refuse_more(path, [row for row in found if row is not None and len(row) == columns], columns)
         return TextLayout(columns=columns, heading=0)
     return None
+
+
+def _positions_above(lines: list[str]) -> tuple[float, ...] | None:
+    """The positions of the columns of a matrix, from a first line whose first cell is a word or empty; else None.
+
+    They and the first numbers of the rows below it rise or fall in equal steps.
+    """
+    rows = [row for row in map(_row, lines[1:31]) if row is not None]
+    if len(rows) < 4 or len(rows[0]) < 5 or any(len(row) != len(rows[0]) for row in rows):
+        return None
+    mark = mark_of(lines[0])
+    corner, *words = lines[0].rstrip().split(mark) if mark else lines[0].split()
+    values, first = [_value(word) for word in words], _value(corner)
+    if (first is not None and np.isfinite(first)) or len(values) != len(rows[0]) - 1:
+        return None
+    across = [float("nan") if value is None else value for value in values]
+    return tuple(across) if _in_equal_steps(np.array(across)) and _in_equal_steps(np.array(rows)[:, 0]) else None
 
 
 def _refuse_more(path: Path, rows: list[list[float]], columns: int) -> None:
@@ -122,7 +145,7 @@ def _comments(lines: list[str], path: Path) -> tuple[tuple[float, float], float]
         value = _value(number)
         if value is None or not value > 0:
             raise ReadError(f"{path}: a size of {number} {unit} in its head; write a positive number such as 12.5 um")
-        return value * scale(unit.replace("µ", "u").replace("μ", "u"), "m", name=f"{path}, head")
+        return value * scale(plain_unit(unit), "m", name=f"{path}, head")
 
     return (metres(sizes[0][1], sizes[0][2]), metres(sizes[1][1], sizes[1][2])), metres("1", heights[0][1])
 
@@ -159,7 +182,7 @@ def _heading(line: str, path: Path) -> Heading | None:
     return (factors[0], factors[-2], factors[-1]), order
 
 
-def read(path: Path, how: TextLayout, scales: tuple[float, float, float], steps: Steps) -> Scan | Profile:
+def read(path: Path, how: TextLayout, scales: tuple[float, float, float], steps: Steps | None) -> Scan | Profile:
     """Read the points; `scales` are metres per unit of x, y, z, `steps` gives a matrix's spacing from its points.
 
     Raises ReadError for anything but a regular grid.
@@ -167,10 +190,17 @@ def read(path: Path, how: TextLayout, scales: tuple[float, float, float], steps:
     data = _table(path, how)
     x, y, z = scales
     if how.matrix:
-        ny, nx = data.shape
-        if how.size is None:
+        spacing = None
+        if how.across is not None:
+            (ix, dx), (iy, dy) = _axis(np.array(how.across), path, "x"), _axis(data[:, 0], path, "y")
+            data, spacing = data[np.argsort(iy), 1:][:, np.argsort(ix)], (dx * x, dy * y)
+        elif how.size is None:
             _refuse_positions(path, data)
-        spacing = steps(nx, ny) if how.size is None else (how.size[0] / nx, how.size[1] / ny)
+        else:
+            spacing = how.size[0] / data.shape[1], how.size[1] / data.shape[0]
+        if how.size is None and steps is not None:
+            spacing = steps(data.shape[1], data.shape[0])
+        assert spacing is not None
         return Scan(heights=data * z, spacing=spacing, source=str(path))
     if how.order is not None:
         data = data[:, list(how.order)]
@@ -290,12 +320,38 @@ def _grid(path: Path, data: Array, x: float, y: float, z: float) -> Scan:
 
 
 def _line(path: Path, data: Array, x: float, z: float) -> Profile:
-    ix, dx = _axis(data[:, 0], path, "x")
-    if len(np.unique(ix)) != len(ix):
+    if not np.isfinite(data[:, 0]).all():
+        raise ReadError(f"{path}: some x are missing; only z may be")
+    places, again = np.unique(data[:, 0], return_index=True)
+    if len(places) != len(data):
         raise ReadError(f"{path}: two points share one x; a line scan has one height for each x")
+    try:
+        ix, dx = _axis(places, path, "x")
+    except ReadError:
+        return uneven_line(path, places * x, data[again, 1] * z)
     heights = np.full(int(ix.max()) + 1, np.nan)
-    heights[ix] = data[:, 1]
+    heights[ix] = data[again, 1]
     return Profile(heights=heights * z, spacing=dx * x, source=str(path))
+
+
+ROUNDED = 0.1  # of a step: how far the positions of a line may be off an even grid
+
+
+def uneven_line(path: Path, places: Array, heights: Array) -> Profile:
+    """A line from rising positions [m] and heights [m]; those between larger gaps are interpolated, which a note says.
+
+    Positions that are rounded in the file differ a little from an even grid, and stand for it.
+    """
+    gaps = np.diff(places)
+    step = float(np.ptp(places)) / (len(places) - 1)
+    even = places[0] + step * np.arange(len(places))
+    if np.abs(places - even).max() <= ROUNDED * step:
+        return Profile(heights=heights, spacing=step, source=str(path))
+    note = (
+        f"{path}: the steps of the line are {gaps.min():.3g} to {gaps.max():.3g} m; heights are interpolated at even "
+        f"steps of {step:.3g} m"
+    )
+    return Profile(heights=np.interp(even, places, heights), spacing=step, source=str(path), notes=(note,))
 
 
 def write(scan: Scan | Profile, path: Path, *, xy: float, z: float) -> None:
