@@ -27,6 +27,7 @@ from faying.joint.structure import Structure
 from faying.misuse import checked_call
 from faying.mpi.over_mpi import OverMpi
 from faying.notes import Note
+from faying.numerics.follow import between_by_rank
 from faying.numerics.solve import chosen, is_mpi
 from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
@@ -234,8 +235,8 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: Bounds) -> d
         "frequencies": np.stack([s.damped.frequencies for s in states]),
         "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
         "loss_error": np.stack([s.damped.error for s in states]),
-        "low": None if low is None or bounds[0] is None else np.maximum(low, bounds[0]),
-        "high": None if high is None or bounds[1] is None else np.minimum(high, bounds[1]),
+        "low": None if low is None or bounds[0] is None else between_by_rank(low, *bounds),
+        "high": None if high is None or bounds[1] is None else between_by_rank(high, *bounds),
         "outside_share": np.array([s.outside_share for s in states]),
         "above_range_share": np.array([s.above_range_share for s in states]),
         "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
