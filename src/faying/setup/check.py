@@ -192,6 +192,8 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     sketch = _bolts(sketch, found, shared)
     _dowels(sketch, found)
     surfaces = _surfaces(study, found)
+    for name, test in study.part_tests.items():
+        found.tried("part", f"part.{name}.file", test.read)
     for level, code, words, key in law_findings(sketch, surfaces):
         found.add(level, code, words, key)
     made = _meshed(study, facts, named, found) if mesh and ready is None else ready
