@@ -72,7 +72,7 @@ def test_twins_stay_in_the_order_of_their_frequencies(turned):
 
 
 def test_a_stiffer_joint_bounds_frequencies_by_rank_and_not_those_of_modes():
-    """Oscillators whose first passes the others: each is where it belongs, and the bounds of the order leave it there."""
+    """Oscillators whose first passes the others: the bounds of the order leave each where it is."""
     soft, stiff = (oscillators(k)[0] for k in ((1.0, 6.0, 9.0), (20.0, 6.0, 9.0)))
     between = np.sqrt(12 / 1.0), np.sqrt(6 / 2.0), np.sqrt(9 / 1.5)  # the first is the highest now
     assert between_by_rank(np.array(between), soft, stiff) == pytest.approx(between)
