@@ -21,6 +21,7 @@ from faying.case.engine import engine_of
 from faying.case.level_damping import level_notes
 from faying.case.mesh_error import mesh_error, mesh_notes
 from faying.case.provenance import provenance
+from faying.case.scatter import IN_INTERVALS
 from faying.case.solve import LoadedCase, released, solve
 from faying.errors import InputError, NotConverged
 from faying.joint.structure import Structure
@@ -31,7 +32,9 @@ from faying.numerics.follow import between_by_rank
 from faying.numerics.solve import chosen, is_mpi
 from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
+from faying.study.keys.varied import number_of
 from faying.study.study import Study
+from faying.text import listed
 from faying.typing import Array
 
 LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
@@ -369,9 +372,12 @@ def _closing_notes(study: Study, rigid: Array, first: float) -> Iterator[Note]:
     if study.uncertain is not None:
         within = [column.key for column in study.uncertain.inputs if column.within]
         taken = f"; of {', '.join(within)} the median is taken" if within else ""
+        left = [one.key for one in study.uncertain.inputs if number_of(one.key).name not in IN_INTERVALS]
+        but = f", but for {listed(left)}" * bool(left)
+        ends = f"; the intervals have what [uncertain] says{but}" * study.modes.intervals
         text = (
-            f"the numbers under [uncertain] do not scatter here: this is the answer at those that the study "
-            f"gives{taken}; faying predict gives intervals"
+            f"as modelled are the frequencies at the numbers that the study gives{taken}{ends}; faying predict draws "
+            "all of them at once"
         )
         yield Note(code="uncertain", text=text)
     if study.load_cases:

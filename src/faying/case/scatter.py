@@ -26,6 +26,7 @@ DEFAULT_WAY = "torque wrench, friction estimated"  # of tightening, where nothin
 TWO_SIGMA = 0.02275  # probability below two standard deviations
 SCORE = 1.6449  # standard deviations from the median to these ends
 OF_PARTS = ("E", "density")
+IN_INTERVALS = (*OF_PARTS, "stiffness", "tangential", "preload", "factor")  # what a run takes from [uncertain]
 # of ln f by E: half of the coefficient of variation 0.03 of steel, JCSS Probabilistic Model Code, part 3.2
 YOUNG = 0.015
 DENSITY_SD = 0.01  # of ln density of steel (JCSS Probabilistic Model Code, part 2.1)

@@ -173,7 +173,8 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
             found.add("fault", "names", text, f"geometry.face_size.{name}")
     if len(found.out) > before and any(one.level == "fault" for one in found.out):
         return Checked(findings=tuple(found.out), expected=_expected(study, facts, named, ready, found))
-    found.add("ok", "names", f"{len(facts.parts)} parts and {len(named)} named faces of {facts.file}")
+    parts = "1 part" if len(facts.parts) == 1 else f"{len(facts.parts)} parts"
+    found.add("ok", "names", f"{parts} and {len(named)} named faces of {facts.file}")
     sketch = Sketch(
         study=study,
         facts=facts,
