@@ -1,8 +1,11 @@
 """Whether intervals of an identification hold what they say: truths from the priors, a test made of each, identified.
 
-    python benchmarks/calibration.py [--study examples/two-blocks/uncertain.toml] [--truths 30]
+    python benchmarks/calibration.py [--study examples/two-blocks/uncertain.toml] [--truths 30] [--waves]
 
-For each truth the model itself gives the frequencies; offset and scatter are drawn from their priors, too. Printed are
+For each truth the model itself gives the frequencies; offset and scatter are drawn from their priors, too. With --waves
+k_t/k_n is unknown as well, and the faces of each truth have waves of their own, of which the model knows nothing.
+
+Printed are
 the share of truths inside the 5 to 95 % intervals, for each parameter and for all, and the chi-square of the ranks in
 five bins (Talts et al. 2018, arXiv:1804.06788).
 """
@@ -11,6 +14,7 @@ import argparse
 import math
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -40,9 +44,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--study", type=Path, default=ROOT / "examples" / "two-blocks" / "uncertain.toml")
     parser.add_argument("--truths", type=int, default=30)
+    parser.add_argument("--waves", action="store_true")
     parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
 
+    from faying.case.scatter import assumed
     from faying.identify.identify import identify_model, points_for
     from faying.identify.noise import DISCREPANCY_SD, TEST_SD
     from faying.identify.of_study import StudyModel, _Stage
@@ -54,8 +60,16 @@ def main():
     study = Study.read(given.study)
     began = time.process_time()
     stage = _Stage(None)
-    ensemble = Ensemble.of(study, 8, given.seed)
-    model = PartFile(StudyModel(ensemble, Reduced(ensemble, report=stage), stage))
+
+    def model_with(more):
+        choice = study.uncertain
+        ensemble = Ensemble.of(replace(study, uncertain=replace(choice, inputs=(*choice.inputs, *more))), 8, given.seed)
+        return StudyModel(ensemble, Reduced(ensemble, report=stage), stage)
+
+    ratio = [one for one in assumed(study).inputs if given.waves and one.key.endswith(".tangential")]
+    waves = [one for one in assumed(study).inputs if given.waves and ".waviness" in one.key]
+    model = PartFile(model_with(ratio))
+    true_model = model_with([*ratio, *waves]) if waves else model.model
     print(f"bases: {time.process_time() - began:.0f} CPU s", flush=True)
     # the points over the priors come first: they settle which modes are the test's
     size = len(model.names)
@@ -64,10 +78,10 @@ def main():
     loads = np.array(study.loads)
     ranks, started = [], time.process_time()
     # truths fill the priors evenly: what a test does not see has the rank that its truth has in the prior
-    priors = (*model.priors, TEST_SD, DISCREPANCY_SD)
+    priors = (*true_model.priors, TEST_SD, DISCREPANCY_SD)
     for row in at_shares(priors, sobol(len(priors), given.truths, given.seed + 1)):
-        truth, (sd, bias) = row[:size], row[size:]
-        found, reasons = model.model.frequencies(truth[None])
+        truth, (sd, bias) = row[:size], row[-2:]
+        found, reasons = true_model.frequencies(row[None, :-2])
         if reasons[0] or not np.isfinite(found).all():
             print(f"no answer at {truth}: {reasons[0]}", flush=True)
             continue

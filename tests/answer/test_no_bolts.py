@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 import faying
 from faying.answer.run import run
 from faying.cli.main import cli
+from faying.output.answer import lead
 from faying.output.report import html
 from faying.setup import new
 from tests.geometry.test_face_facts import box, written
@@ -134,6 +135,7 @@ def test_what_has_no_meaning_without_joints_is_absent(result, tmp_path):
     assert "faces bonded" not in page
     assert result.interval.sources == ("mesh", "structure", "mode")
     assert "no preload" in str(result)
+    assert lead(result).startswith("Without bolts, the lowest ")
     assert "NaN" not in json.dumps(facts)
     assert faying.load(result.save(tmp_path / "r.nc")) == result
 

@@ -141,8 +141,21 @@ def test_a_file_of_modes_gives_the_frequencies(tmp_path):
         positions={1: (0.0, 0.0, 0.0)},
     )
     file = write_uff(tmp_path / "part.uff", modes)
-    part = PartAlone(name="bar", structure=plates(), test=PartTestChoice(file=file))
+    part = PartAlone(name="bar", structure=plates(), test=PartTestChoice(file=file).read())
     np.testing.assert_allclose(part.measured, frequencies)
+
+
+def test_a_file_that_is_no_test_is_named_before_any_work(tmp_path):
+    (tmp_path / "model.inp").write_text(abaqus(stacked()))
+    (tmp_path / "low.uff").write_text("this is no universal file")
+    text = STUDY.replace('[part.low]\nmaterial = "45 steel"\n', '[part.low]\nmaterial = "45 steel"\nfile = "low.uff"\n')
+    (tmp_path / "study.toml").write_text(text)
+    stages: list[str] = []
+    with pytest.raises(faying.FayingError, match="low.uff"):
+        run(tmp_path / "study.toml", report=lambda stage, *_: stages.append(stage))
+    assert stages == []
+    (fault,) = faying.check(tmp_path / "study.toml").faults
+    assert (fault.key, "low.uff" in fault.text) == ("part.low.file", True)
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import faying
+from faying.answer.wave_band import Draws
+from faying.case.case import Case
 from faying.case.level_damping import REST
 from faying.case.scatter import SCORE, default, discrepancy, mode_sd, structure_sd, with_assumed
 from faying.study import Study
+from tests.helpers.meshfiles import abaqus
+from tests.helpers.plates import stacked
 
 ROOT = Path(__file__).parents[2]
 THEORY = ROOT / "docs" / "theory"
@@ -125,3 +130,46 @@ def test_seats_of_solid_bolts_have_no_waves_that_nobody_gives():
     study = Study.read(ROOT / "examples" / "solid-bolt" / "study.toml")
     wavy = {key.split(".")[1] for key in keys(study) if "waviness" in key}
     assert wavy < {joint.name for joint in study.joints}
+
+
+CURVED = """
+[geometry]
+mesh = "model.inp"
+unit = "mm"
+[part.low]
+material = "45 steel"
+[part.high]
+material = "45 steel"
+[surface]
+D = 2.39
+G = "1.53e-10 m"
+scan_area = "16 mm^2"
+[law]
+model = "jk"
+[[joint]]
+name = "joint"
+faces = ["low.top", "high.bottom"]
+[[bolt]]
+faces = ["high.top", "low.bottom"]
+preload = "8 kN"
+[modes]
+count = 3
+levels = []
+"""
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.02])
+def test_a_prediction_draws_waves_where_a_run_draws_them(tmp_path, rise):
+    """Plates bent to a cylinder have none: no key leads to waves that their faces refuse."""
+    flat = stacked(counts=(8, 2, 1), size=(0.12, 0.03, 0.01))
+    points = flat.points.copy()
+    points[:, 2] += rise * (points[:, 0] / 0.06 - 1) ** 2
+    (tmp_path / "model.inp").write_text(abaqus(replace(flat, points=points)))
+    (tmp_path / "study.toml").write_text(CURVED)
+    study = Study.read(tmp_path / "study.toml")
+    drawn = any(one.endswith("waviness_seed") for one in keys(study))
+    assert drawn == bool(Draws.of(Case.of(study)).drawn) == (rise == 0.0)
+    if rise:
+        found = faying.predict(study, samples=8)
+        assert found.answered == 8
+        assert [note.text for note in found.notes if note.code == "no-waves"]

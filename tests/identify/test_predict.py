@@ -139,7 +139,7 @@ def test_a_prediction_is_one_page(found):
     assert f"{middle:.1f}" in page
 
 
-def test_a_run_says_that_nothing_scatters_in_it(tmp_path):
+def test_a_run_says_which_scatter_is_in_its_intervals(tmp_path):
     path = tmp_path / "study.toml"
     write(path)
     path.write_text(path.read_text().replace("[[joint]]", '[[joint]]\nfriction = "0.1 to 0.6"', 1))
@@ -149,6 +149,7 @@ def test_a_run_says_that_nothing_scatters_in_it(tmp_path):
     notes = run(replace(study, geometry=coarse, modes=ModesChoice(count=2))).notes
     (note,) = [note for note in notes if note.code == "uncertain"]
     assert f"of joint.{study.joints[0].name}.friction the median is taken" in note.text
+    assert f"what [uncertain] says, but for joint.{study.joints[0].name}.friction" in note.text
 
 
 def test_the_same_seed_gives_the_same_samples(plan, found):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from faying.numerics.follow import follow, may_cross
+from faying.numerics.follow import between_by_rank, follow, may_cross, same_group
 
 
 def oscillators(stiffness):
@@ -69,3 +69,20 @@ def test_twins_stay_in_the_order_of_their_frequencies(turned):
     before = np.eye(4)[:, :3]
     after = np.array([[0, c, -s], [0, s, c], [1, 0, 0], [0, 0, 0]], dtype=float)
     assert follow(before, after, np.eye(4), np.array([100.0, 100.01, 105.0])).tolist() == [1, 2, 0]
+
+
+def test_a_stiffer_joint_bounds_frequencies_by_rank_and_not_those_of_modes():
+    """Oscillators whose first passes the others: the bounds of the order leave each where it is."""
+    soft, stiff = (oscillators(k)[0] for k in ((1.0, 6.0, 9.0), (20.0, 6.0, 9.0)))
+    between = np.sqrt(12 / 1.0), np.sqrt(6 / 2.0), np.sqrt(9 / 1.5)  # the first is the highest now
+    assert between_by_rank(np.array(between), soft, stiff) == pytest.approx(between)
+    over = np.array([between[0], between[1], 1.2 * stiff[1]])  # what a small basis misses
+    assert between_by_rank(over, soft, stiff) == pytest.approx([between[0], between[1], stiff[1]])
+
+
+def test_twins_are_told_at_each_load():
+    found = same_group(np.array([[1.0, 1.0005, 2.0], [1.0, 1.5, 1.5001]]))
+    assert found.tolist() == [
+        [[True, True, False], [True, True, False], [False, False, True]],
+        [[True, False, False], [False, True, True], [False, True, True]],
+    ]

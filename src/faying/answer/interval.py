@@ -17,6 +17,7 @@ from faying.case.solve import LoadedCase
 from faying.errors import NotConverged
 from faying.joint.joint_law import JointLaw
 from faying.notes import INCOMPLETE, Note
+from faying.numerics.follow import same_group
 from faying.result.interval import Interval
 from faying.typing import Array
 
@@ -158,8 +159,16 @@ def law_notes(case: Case) -> Iterator[Note]:
 def _combined(
     case: Case, states: Sequence[LoadedCase], mesh: MeshError | None, parts: KnownParts | None, joints: Joints
 ) -> Interval:
-    """The interval of each frequency, by what each thing moves ln f (loads, m) from the best estimate."""
+    """The interval of each frequency, by what each thing moves ln f (loads, m) from the best estimate.
+
+    Twins have one for both: which of them is which no shape tells.
+    """
     f = np.stack([state.damped.frequencies for state in states])
+    groups = same_group(f)
+
+    def of_group(values: Array) -> Array:
+        return np.asarray(np.einsum("lij,...lj->...li", groups / groups.sum(axis=-1, keepdims=True), values))
+
     found, moved, middle, about = {}, np.zeros(f.shape), np.zeros(f.shape), joints.about
     drawn = f if joints.drawn is None else joints.drawn
     if isinstance(about, np.ndarray):
@@ -170,8 +179,10 @@ def _combined(
                 found[name] = np.log(np.stack([low, high]) / about)
     if joints.band is not None:
         logs = np.log(joints.band.frequencies / f)
-        middle += 0.0 if isinstance(drawn, NotConverged) else logs.mean(axis=0)
-        found["waves"] = SCORE * logs.std(axis=0, ddof=1) * ONE_EACH_WAY
+        mean = logs.mean(axis=0)
+        middle += 0.0 if isinstance(drawn, NotConverged) else mean
+        split = of_group((mean - of_group(mean)) ** 2)  # of twins, by waves that are nowhere alike
+        found["waves"] = SCORE * np.sqrt(of_group(logs.var(axis=0, ddof=1)) + split) * ONE_EACH_WAY
     if all(state.ends and "scan" in state.ends for state in states):
         found["scan"] = np.log(np.stack([(state.ends or {})["scan"] for state in states], axis=1) / f)
     if len(states) > 1:
@@ -183,8 +194,8 @@ def _combined(
         found, moved = parts.instead(found)
     if mesh is not None:
         found["mesh"], moved = mesh.offsets, moved + mesh.middle
-    named = {name: found[name] for name in SCATTER if name in found}
-    return Interval.about(f * np.exp(middle + moved), named, moved)
+    named = {name: of_group(found[name]) for name in SCATTER if name in found}
+    return Interval.about(np.exp(of_group(np.log(f) + middle + moved)), named, of_group(moved))
 
 
 def _preload_factors(case: Case) -> tuple[float, float, float]:

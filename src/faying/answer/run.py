@@ -21,16 +21,20 @@ from faying.case.engine import engine_of
 from faying.case.level_damping import level_notes
 from faying.case.mesh_error import mesh_error, mesh_notes
 from faying.case.provenance import provenance
+from faying.case.scatter import IN_INTERVALS
 from faying.case.solve import LoadedCase, released, solve
 from faying.errors import InputError, NotConverged
 from faying.joint.structure import Structure
 from faying.misuse import checked_call
 from faying.mpi.over_mpi import OverMpi
 from faying.notes import Note
+from faying.numerics.follow import between_by_rank
 from faying.numerics.solve import chosen, is_mpi
 from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
+from faying.study.keys.varied import number_of
 from faying.study.study import Study
+from faying.text import listed
 from faying.typing import Array
 
 LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
@@ -234,8 +238,8 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: Bounds) -> d
         "frequencies": np.stack([s.damped.frequencies for s in states]),
         "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
         "loss_error": np.stack([s.damped.error for s in states]),
-        "low": None if low is None or bounds[0] is None else np.maximum(low, bounds[0]),
-        "high": None if high is None or bounds[1] is None else np.minimum(high, bounds[1]),
+        "low": None if low is None or bounds[0] is None else between_by_rank(low, *bounds),
+        "high": None if high is None or bounds[1] is None else between_by_rank(high, *bounds),
         "outside_share": np.array([s.outside_share for s in states]),
         "above_range_share": np.array([s.above_range_share for s in states]),
         "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
@@ -368,9 +372,12 @@ def _closing_notes(study: Study, rigid: Array, first: float) -> Iterator[Note]:
     if study.uncertain is not None:
         within = [column.key for column in study.uncertain.inputs if column.within]
         taken = f"; of {', '.join(within)} the median is taken" if within else ""
+        left = [one.key for one in study.uncertain.inputs if number_of(one.key).name not in IN_INTERVALS]
+        but = f", but for {listed(left)}" * bool(left)
+        ends = f"; the intervals have what [uncertain] says{but}" * study.modes.intervals
         text = (
-            f"the numbers under [uncertain] do not scatter here: this is the answer at those that the study "
-            f"gives{taken}; faying predict gives intervals"
+            f"as modelled are the frequencies at the numbers that the study gives{taken}{ends}; faying predict draws "
+            "all of them at once"
         )
         yield Note(code="uncertain", text=text)
     if study.load_cases:

@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from faying.bolt.solid_bolt import SolidBolt
 from faying.case.case import Case
 from faying.case.solve import LoadedCase
+from faying.case.waves import drawn_on
 from faying.errors import NotConverged
 from faying.form.face_axes import FaceAxes
-from faying.form.form import Form
-from faying.form.machining import ASSUMED, ASSUMED_GAP
+from faying.form.machining import ASSUMED_GAP
 from faying.form.waviness import LaidWaves
 from faying.notes import Note, joint_names
 from faying.result.run_record import preload_slope
@@ -71,12 +70,7 @@ class _Wavy:
 
 @dataclass(frozen=True, kw_only=True)
 class Draws:
-    """The draws of waves on the joints of a case; nothing on a joint that stays as it is.
-
-    Where a joint says nothing of its form, the waves are those that are assumed of machined faces; where it gives
-    waves, other draws of them. A form without waves stays as it is; so do the seats of solid bolts, and faces that are
-    curved or have no room for waves.
-    """
+    """The draws of waves on the joints of a case; nothing on a joint that stays as it is."""
 
     wavy: Sequence[_Wavy | None]
     seeds: tuple[int, ...] = tuple(range(DRAWS))
@@ -139,19 +133,14 @@ class Draws:
 
 def _wavy(case: Case) -> list[_Wavy | None]:
     """Where waves are drawn on each joint; None where it stays as it is."""
-    structure, mesh = case.structure, case.structure.mesh
-    bolts = {bolt.part for bolt in structure.bolts if isinstance(bolt, SolidBolt)}
-    out: list[_Wavy | None] = []
+    structure, out = case.structure, list[_Wavy | None]()
     for joint, choice, surface in zip(structure.joints, case.study.joints, case.surfaces, strict=True):
-        interface, form = joint.interface, (choice.form or Form(waviness=ASSUMED)).with_scan(surface.waves)
-        if form.waviness is None or any(mesh.face_part[face] in bolts for face in joint.faces):
+        interface = joint.interface
+        found = drawn_on(case.study, structure.mesh, choice, interface, surface)
+        if found is None:
             out.append(None)
             continue
-        axes = FaceAxes.of(mesh, joint.faces, interface, form.along)
-        laid = LaidWaves.of(form.waviness, axes) if form.waviness.fits(axes) else None
-        if laid is None or laid.waves.longest < laid.carried:
-            out.append(None)
-            continue
+        axes, laid = found
         silent = choice.form is None
         given = 0.0 if silent else laid.gap(interface.positions, axes, interface.weights)
         out.append(

@@ -78,6 +78,7 @@ class Case:
         """
         progress = progress or Progress(0)
         hammer = None
+        study = replace(study, part_tests={name: test.read() for name, test in study.part_tests.items()})
         if study.hammer is not None:
             progress.begin("hammer test")
             hammer = Hammer.read(study.hammer)

@@ -13,7 +13,6 @@ strain energy and mu_p of its kinetic energy in part p, and moves by
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,6 @@ from faying.joint.assembled_parts import unknowns_of
 from faying.joint.modal import ModalProblem, ModesChoice
 from faying.joint.shared_modes import modes_with
 from faying.joint.structure import Structure
-from faying.measured.tested import read_test
 from faying.notes import Note
 from faying.numerics.follow import partners
 from faying.study.keys.material import PartTestChoice
@@ -93,13 +91,10 @@ class PartAlone:
     structure: Structure
     test: PartTestChoice
 
-    @cached_property
+    @property
     def measured(self) -> Array:
         """Frequencies [Hz] (t,) of its own test, rising."""
-        test = self.test
-        if test.file is None:
-            return np.sort(np.array(test.frequencies))
-        return np.sort(read_test(test.file, quantity=test.quantity).modes.frequencies)
+        return np.sort(np.array(self.test.frequencies))
 
     def modes(self, count: int) -> tuple[Array, Array]:
         """Its lowest free elastic modes (m,): frequencies [Hz] and their estimated errors by the mesh [-]."""

@@ -8,11 +8,14 @@ from typing import final
 import numpy as np
 
 from faying.bolt.tightening import TIGHTENING
-from faying.case.case import part_of
+from faying.case.case import checked_mesh, surfaces_of
 from faying.case.law_range import of_joints
+from faying.case.waves import drawn_on
 from faying.distribution import Distribution
+from faying.fe.interface import join
 from faying.form.machining import ASSUMED
 from faying.study.keys.bolt_sheet import BoltSheetChoice
+from faying.study.keys.joint import JointChoice
 from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice
 from faying.study.keys.varied import number_of
 from faying.study.study import Study
@@ -23,6 +26,7 @@ DEFAULT_WAY = "torque wrench, friction estimated"  # of tightening, where nothin
 TWO_SIGMA = 0.02275  # probability below two standard deviations
 SCORE = 1.6449  # standard deviations from the median to these ends
 OF_PARTS = ("E", "density")
+IN_INTERVALS = (*OF_PARTS, "stiffness", "tangential", "preload", "factor")  # what a run takes from [uncertain]
 # of ln f by E: half of the coefficient of variation 0.03 of steel, JCSS Probabilistic Model Code, part 3.2
 YOUNG = 0.015
 DENSITY_SD = 0.01  # of ln density of steel (JCSS Probabilistic Model Code, part 2.1)
@@ -177,19 +181,28 @@ def assumed(study: Study) -> UncertainChoice:
         found["joint.tangential"] = default("k_t/k_n").within(0.01, 2.0, "()")[0]
     for bolt in study.bolts:
         found[f"bolt.{bolt.name}.factor"] = default("preload")
-    solid = {bolt.part for bolt in study.bolts if bolt.part is not None}
-    for joint in study.joints:
-        if solid & {part_of(study, face) for face in joint.faces}:  # seats of solid bolts have no waves in a run
-            continue
+    for joint in _wavy(study):
         key = f"joint.{joint.name}.form.waviness"
         if joint.form is None and ASSUMED.Wq is not None:
             found[key] = Distribution(kind="lognormal", centre=ASSUMED.Wq, spread=0.4)
-        if joint.form is None or joint.form.waviness is not None:
-            found[f"{key}_seed"] = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
+        found[f"{key}_seed"] = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
     units = {key: "m" if key.endswith("waviness") else "" for key in found}
     return UncertainChoice(
         inputs=tuple(Input(key=key, distribution=one, unit=units[key]) for key, one in found.items())
     )
+
+
+def _wavy(study: Study) -> list[JointChoice]:
+    """The joints on which a run draws waves; the parts are meshed where any may be."""
+    asked = [joint.form is None or joint.form.waviness is not None for joint in study.joints]
+    if not any(asked):
+        return []
+    mesh, out = checked_mesh(study), []
+    for joint, surface, may in zip(study.joints, surfaces_of(study), asked, strict=True):
+        met = join(mesh, *joint.faces, search_distance=joint.search_distance)
+        if may and drawn_on(study, mesh, joint, met, surface) is not None:
+            out.append(joint)
+    return out
 
 
 def preload_scatter(study: Study, bolt: str, choice: BoltSheetChoice) -> tuple[float, str]:

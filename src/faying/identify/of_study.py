@@ -13,7 +13,7 @@ from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, paired_modes
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
-from faying.identify.predict import check, cut_notes, of_bases
+from faying.identify.predict import check, cut_notes, of_bases, part_test_notes
 from faying.identify.sampling.ensemble import Ensemble, scattering
 from faying.identify.sampling.evaluate import LIMIT, Reduced
 from faying.identify.sampling.store import SampleStore
@@ -176,7 +176,7 @@ def _identified(
             scatter=choice.test_loss or LOSS_TEST_SD,
             discrepancy=choice.discrepancy_loss or LOSS_DISCREPANCY_SD,
         )
-    found, cut = [], cut_notes(ensemble.inputs.columns)
+    found, cut = [], [*cut_notes(ensemble.inputs.columns), *part_test_notes(study)]
     for law in range(max(len(choice.models), 1)):
         model = StudyModel(ensemble, reduced, stage, law)
         one = identify_model(

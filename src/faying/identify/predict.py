@@ -18,8 +18,8 @@ from faying.identify.sampling.evaluate import LIMIT, Reduced
 from faying.identify.sampling.follow import Follower, choice_of, sliding
 from faying.identify.sampling.store import SampleStore
 from faying.misuse import checked_call
-from faying.notes import Note
-from faying.progress import Report
+from faying.notes import Note, joint_names
+from faying.progress import Report, silent
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
@@ -70,8 +70,9 @@ def predict(
         Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
     """
     study = Study.read_bolted(study)
-    study = replace(study, uncertain=with_assumed(study))
     check(study, samples, seed)
+    (report or silent)("mesh", 0, 0)
+    study = replace(study, uncertain=with_assumed(study))
     choice = choice_of(study, samples, backbones) if backbones else None
     ensemble = Ensemble.of(study, samples, seed)
     if choice is not None:
@@ -140,7 +141,15 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
 
 def _notes(study: Study, found: Prediction) -> list[Note]:
     """What a reader of the intervals ought to know."""
-    out = cut_notes(found.inputs.columns)
+    out = [*cut_notes(found.inputs.columns), *part_test_notes(study)]
+    choice = study.uncertain or UncertainChoice()
+    drawn = {one.key for one in choice.inputs}
+    flat = [
+        one.name for one in study.joints if one.form is None and f"joint.{one.name}.form.waviness_seed" not in drawn
+    ]
+    if flat and not choice.only:
+        text = "no waves are drawn: the faces are curved, have no room for waves, or are seats of a solid bolt"
+        out.append(Note(code="no-waves", text=f"{joint_names(flat)}: {text}"))
     for reason, count in found.reasons.items():
         out.append(Note(code="no-answer", text=f"{count} of {len(found.values)} samples have no answer: {reason}"))
     if found.convergence > MOVED:
@@ -164,7 +173,7 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
                 "interval is that of the others"
             )
             out.append(Note(code="test-modes", text=text))
-    if study.uncertain is not None and not study.uncertain.models:
+    if not choice.models:
         text = (
             f"the intervals include what is listed above, and {found.discrepancy:.2%} of each frequency for what else "
             "the parts are (uncertain.structure, discrepancy); not the error of the mesh"
@@ -185,6 +194,15 @@ def of_bases(errors: Array) -> list[Note]:
         if len(row)
     ]
     return [Note(code="bases", text=f"the small bases miss a frequency of a sample by up to {', '.join(parts)}")]
+
+
+def part_test_notes(study: Study) -> list[Note]:
+    """Say that what was measured of parts alone is not used."""
+    if not study.part_tests:
+        return []
+    names = ", ".join(study.part_tests)
+    text = f"what was measured of {names} alone is not used here; the intervals of faying run have it"
+    return [Note(code="left-out", text=text)]
 
 
 def cut_notes(columns: Sequence[Any]) -> list[Note]:

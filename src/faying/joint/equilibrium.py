@@ -9,7 +9,7 @@ matrices (`preload`) or in a small basis (`reduce`).
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,6 +28,10 @@ FORCING_TERM = 0.03  # of the imbalance, which a Newton step far from equilibriu
 FIX_FRICTION_BELOW = 1e-4  # imbalance below which k_t and the limit of friction are kept
 ALIKE = 1e-9  # relative difference of two loads up to which one is a multiple of the other
 MAX_NEWTON_STEPS = 60
+# share of a change of k_t that the next one is, either way, from which both are taken to where they lead: below it
+# changes die out by themselves in a few steps; the most that it is taken for, so that none goes 20 times as far; and
+# how far the two may point apart [-]
+SLOW, SLOWEST, ALIGNED = 0.5, 0.95, 0.2
 STATES = 4  # under multiples of one load, from which the next is extrapolated
 
 
@@ -170,8 +174,8 @@ class Equilibrium(ABC):
         Raises NotConverged after `most` steps.
         """
         scale, taken, inner = float(np.linalg.norm(load)), 0, 0
-        least, rounding = np.inf, None
-        slip_states = self._stick_slip(u)
+        least, rounding, moved = np.inf, None, None
+        slip_states: Sequence[StickSlip] = self._stick_slip(u)
         while True:
             force = self._out_of_balance(u, load, slip_states)
             size = float(np.linalg.norm(force)) / scale
@@ -183,10 +187,11 @@ class Equilibrium(ABC):
             if size < tolerance:
                 fresh = self._stick_slip(u)
                 change = max(_slip_change(new, old) for new, old in zip(fresh, slip_states, strict=True))
-                slip_states = fresh
-                size = float(np.linalg.norm(self._out_of_balance(u, load, slip_states))) / scale
+                size = float(np.linalg.norm(self._out_of_balance(u, load, fresh))) / scale
                 if size < tolerance or change < 1e-12:
+                    slip_states = fresh
                     break
+                slip_states, moved = _followed(slip_states, fresh, moved)
                 continue
             if taken >= most:
                 raise NotConverged(
@@ -199,7 +204,7 @@ class Equilibrium(ABC):
             u = self._line_search(u, step, load, slip_states)
             # far off, k_t follows at once; near the end it is kept so that Newton converges
             if size > FIX_FRICTION_BELOW:
-                slip_states = self._stick_slip(u)
+                slip_states, moved = _followed(slip_states, self._stick_slip(u), moved)
             taken, inner = taken + 1, inner + count
         slipping = self._move_anchors(u, slip_states)
         openings, pressures = self.contact(u)
@@ -253,7 +258,7 @@ class Equilibrium(ABC):
         self._pattern = pattern
         self._past = [*(one for one in self._past if one[0] != size), (size, u)][-STATES:]
 
-    def _move_anchors(self, u: Array, slip_states: list[StickSlip]) -> tuple[float, ...]:
+    def _move_anchors(self, u: Array, slip_states: Sequence[StickSlip]) -> tuple[float, ...]:
         """Carry the shear that is left to the next load; return the share of the sliding area of each joint."""
         slipping = []
         for index, ((move, p, _), slip_state, (interface, _)) in enumerate(
@@ -414,6 +419,32 @@ def _through_last(past: Sequence[tuple[float, Array]], size: float) -> Array:
         others = np.delete(sizes, k)
         out += np.prod((size - others) / (own - others)) * u
     return out
+
+
+def _followed(
+    old: Sequence[StickSlip], new: Sequence[StickSlip], last: Array | None
+) -> tuple[Sequence[StickSlip], Array | None]:
+    """k_t as the new pressure has it, or, where changes die out slowly or swing, where they lead to; and the change.
+
+    Each pressure sets k_t and k_t moves the pressure: of two joints side by side one swing was 0.9 times the last.
+
+    Args:
+        old, new: states of the joints before and at the new pressure.
+        last: change of k_t [Pa/m] (q,) before, None after a step to where changes lead.
+
+    Source:
+        Aitken's extrapolation of vectors: B. Irons and R. C. Tuck 1969, doi:10.1002/nme.1620010306.
+    """
+    change = np.concatenate([one.k_t - was.k_t for one, was in zip(new, old, strict=True)])
+    if last is None or not np.any(last):
+        return new, change
+    left = float(change @ last / (last @ last))
+    if abs(left) < SLOW or np.linalg.norm(change - left * last) > ALIGNED * np.linalg.norm(change):
+        return new, change
+    left = min(left, SLOWEST)
+    ahead = np.split(change * left / (1 - left), np.cumsum([len(one.k_t) for one in new])[:-1])
+    pairs = zip(new, ahead, strict=True)
+    return [replace(one, k_t=np.clip(one.k_t + by, one.k_t / 2, 2 * one.k_t)) for one, by in pairs], None
 
 
 def _slip_change(new: StickSlip, old: StickSlip) -> float:

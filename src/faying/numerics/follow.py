@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from faying.numerics.product import product
-from faying.typing import Array, Index
+from faying.typing import Array, Index, Mask
 
 TWINS = 1e-3  # relative distance of frequencies below which shapes mix by errors that no frequency shows
 LIKE = 0.5  # squared product from which two shapes are one mode: no other mode can have as much of it
@@ -26,6 +26,23 @@ def partners(alike: Array, least: float = 0.0) -> Index:
     out = np.full(len(alike), -1, dtype=np.int64)
     out[rows] = np.where(alike[rows, columns] >= least, columns, -1)
     return out
+
+
+def same_group(frequencies: Array) -> Mask:
+    """Whether two modes are one of them or twins (..., m, m), by their frequencies (..., m) in rising order."""
+    apart = np.diff(frequencies, prepend=frequencies[..., :1]) > TWINS * frequencies
+    group = np.cumsum(apart, axis=-1)
+    return np.asarray(group[..., :, None] == group[..., None, :])
+
+
+def between_by_rank(values: Array, least: Array, most: Array) -> Array:
+    """Frequencies (..., m) of modes in any order between the least and the most (..., m) that the order allows.
+
+    A stiffer joint raises the lowest frequency, the second lowest, and so on: not that of a mode that others pass.
+    """
+    order = np.argsort(values, axis=-1)
+    ranked = np.clip(np.take_along_axis(values, order, axis=-1), least, most)
+    return np.take_along_axis(ranked, np.argsort(order, axis=-1), axis=-1)
 
 
 def may_cross(before: Array, after: Array) -> bool:
@@ -53,12 +70,12 @@ def follow(before: Any, after: Any, mass: Any, frequencies: Array) -> Index:
     moved = product(mass, after)
     sizes = np.sqrt(np.outer(_squares(before, product(mass, before)), _squares(after, moved)))
     alike = np.abs(before.conj().T @ moved / sizes) ** 2
-    group = np.concatenate([[0], np.cumsum(np.diff(frequencies) > TWINS * frequencies[1:])])
-    alike = (group[:, None] == group).astype(float) @ alike
+    groups = same_group(frequencies)
+    alike = groups @ alike
     out = partners(alike, LIKE)
     out[out < 0] = np.setdiff1d(np.arange(alike.shape[1]), out)[: np.count_nonzero(out < 0)]
     # twins keep their order: any directions in their plane serve, so that shapes do not tell which is which
-    return np.concatenate([np.sort(out[group == k]) for k in range(group[-1] + 1)])
+    return np.concatenate([np.sort(out[group]) for group in np.unique(groups, axis=0)[::-1]])
 
 
 def _squares(shapes: Any, momenta: Any) -> Array:

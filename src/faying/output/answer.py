@@ -68,12 +68,13 @@ def damping_line(result: Result) -> str:
 
 def lead(result: Result) -> str:
     """The answer in two or three sentences: the modes at the greatest preload, how the test lies, what limits it."""
-    interval, load = result.interval, load_text(result.loads[-1])
+    interval = result.interval
+    where = f"At {load_text(result.loads[-1])}" if result.bolts else "Without bolts,"
     f = result.frequencies[-1] if interval is None else interval.best[-1]
     if len(f) == 1:
-        words = [f"At {load} the structure has one elastic mode of interest, at {_hertz(f[0])} Hz."]
+        words = [f"{where} the structure has one elastic mode of interest, at {_hertz(f[0])} Hz."]
     else:
-        words = [f"At {load} the lowest {len(f)} elastic modes are from {_hertz(f[0])} to {_hertz(f[-1])} Hz."]
+        words = [f"{where} the lowest {len(f)} elastic modes are from {_hertz(f[0])} to {_hertz(f[-1])} Hz."]
     if interval is not None:
         ends = _interval(float(interval.low[-1, 0]), float(interval.high[-1, 0])).replace("..", "and")
         words.append(f"The first is between {ends} Hz (5 to 95 %).")

@@ -7,6 +7,7 @@ from typing import Self, final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from faying.numerics.follow import between_by_rank
 from faying.style import Summary
 from faying.typing import Array
 
@@ -59,7 +60,7 @@ class Interval(Summary):
         of_parts = [k for k, name in enumerate(self.sources) if name in OF_PARTS]
         room = np.sqrt(self._squares[of_parts].sum(axis=0)) / 2
         least, most = free * np.exp(self.moved - room), bonded * np.exp(self.moved + room)
-        low, best, high = (np.clip(one, least, most) for one in (self.low, self.best, self.high))
+        low, best, high = (between_by_rank(one, least, most) for one in (self.low, self.best, self.high))
         return replace(self, low=low, best=best, high=high)
 
     def summary(self) -> tuple[str, dict[str, str]]:

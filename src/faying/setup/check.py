@@ -173,7 +173,8 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
             found.add("fault", "names", text, f"geometry.face_size.{name}")
     if len(found.out) > before and any(one.level == "fault" for one in found.out):
         return Checked(findings=tuple(found.out), expected=_expected(study, facts, named, ready, found))
-    found.add("ok", "names", f"{len(facts.parts)} parts and {len(named)} named faces of {facts.file}")
+    parts = "1 part" if len(facts.parts) == 1 else f"{len(facts.parts)} parts"
+    found.add("ok", "names", f"{parts} and {len(named)} named faces of {facts.file}")
     sketch = Sketch(
         study=study,
         facts=facts,
@@ -192,6 +193,8 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     sketch = _bolts(sketch, found, shared)
     _dowels(sketch, found)
     surfaces = _surfaces(study, found)
+    for name, test in study.part_tests.items():
+        found.tried("part", f"part.{name}.file", test.read)
     for level, code, words, key in law_findings(sketch, surfaces):
         found.add(level, code, words, key)
     made = _meshed(study, facts, named, found) if mesh and ready is None else ready

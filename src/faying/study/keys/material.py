@@ -3,11 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
+
+import numpy as np
 
 from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.materials import CATALOGUE, MOST_FRICTION, STIFFEST, Material
+from faying.measured.tested import read_test
 from faying.study.declaration.declared import NAME, QUANTITY, REQUIRED, Declared, Inner, Key, one_or_more
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity
@@ -47,6 +50,13 @@ class PartTestChoice:
     frequencies: tuple[float, ...] = ()
     file: Path | None = None
     quantity: str | None = None
+
+    def read(self) -> Self:
+        """The test with the frequencies of its file, rising. Raises ReadError and InputError."""
+        if self.file is None:
+            return self
+        found = np.sort(read_test(self.file, quantity=self.quantity).modes.frequencies)
+        return replace(self, frequencies=tuple(found.tolist()), file=None, quantity=None)
 
 
 def read_parts(top: Table, materials: Mapping[str, Material]) -> tuple[dict[str, str], dict[str, PartTestChoice]]:

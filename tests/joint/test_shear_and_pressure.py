@@ -1,0 +1,44 @@
+"""Pressure sets k_t, and shear moves the pressure: the state where both fit is found though their steps swing."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from faying.reduction.reduced import ReducedEquilibrium, ReducedMotion
+
+COUPLING, SHEAR_OF_PRESSURE = 0.9, 10.0
+
+
+class Proportional:
+    """p = approach and k_t = c p, on one point."""
+
+    def pressure(self, approach):
+        p = np.maximum(approach, 0.0)
+        return p, np.where(p > 0, 1.0, 0.0)
+
+    def stiffness(self, pressure):
+        return np.ones_like(pressure), SHEAR_OF_PRESSURE * pressure
+
+
+def answer(load):
+    """Pressure and slip by elimination: of a given k_t the equations are linear, and k_t = c p is one number."""
+
+    def state(k):
+        slip = (load[1] - COUPLING * load[0] / 2) / (1 + k - COUPLING**2 / 2)
+        return (COUPLING * slip - load[0]) / 2, slip
+
+    return state(brentq(lambda k: SHEAR_OF_PRESSURE * state(k)[0] - k, 0.0, 1e6, xtol=1e-12, rtol=1e-14))
+
+
+# of its steps each change of k_t is 0.5, 0.9, 0.97 and 0.995 times the last, with the other sign
+@pytest.mark.parametrize("pull", [50.0, 2011.0, 20000.0, 1e6])
+def test_pressure_and_shear_that_swing_meet(pull):
+    stiffness = np.array([[1.0, COUPLING], [COUPLING, 1.0]])
+    motion = ReducedMotion(weights=np.ones(1), gap=np.zeros(1), relative=np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]))
+    balance = ReducedEquilibrium(stiffness, [(motion, Proportional())])
+    load = np.array([-2.0, pull])
+    found = balance.solve(load, start=np.array([-1.0, 0.0]), tolerance=1e-10)
+    pressure, slip = answer(load)
+    assert found.pressures[0] == pytest.approx([pressure], rel=1e-7)
+    assert found.displacement[1] == pytest.approx(slip, rel=1e-7)
+    assert found.newton_steps <= 30
