@@ -5,6 +5,9 @@ import pytest
 
 import faying
 from faying.decks.nastran import card
+from faying.decks.raw import UPRIGHT_FIRST
+from faying.fe.elements import KINDS
+from faying.fe.faces import face_centre
 from tests.decks.test_meshfile import same, two, written
 from tests.helpers import meshfiles
 
@@ -218,3 +221,31 @@ def test_grids_with_directions_of_their_own_are_known(tmp_path, blocks):
     text = deck(blocks, plain, ["GRDSET,,,,,,5", *system("R")])
     assert read(tmp_path, text).turned.all()
     assert not read(tmp_path, deck(blocks, plain)).turned.any()
+
+
+CARDS = {"tet": "CTETRA", "hex": "CHEXA", "wedge": "CPENTA"}
+VOLUMES = {"tet": 1 / 6, "hex": 8.0, "wedge": 1.0}  # of the reference shapes
+
+
+@pytest.mark.parametrize("kind", ["tet4", "tet10", "hex8", "hex20", "wedge6", "wedge15"])
+@pytest.mark.parametrize("turned", [False, True])
+def test_solids_numbered_in_either_sense_are_one_body(kind, turned, tmp_path):
+    """MSC Nastran Quick Reference Guide: the corners of a face go round in either direction."""
+    element = KINDS[kind]
+    places = range(1, element.count + 1)
+    grids = [
+        ",".join(["GRID", str(k), "", *map(str, map(float, at))]) for k, at in zip(places, element.nodes, strict=True)
+    ]
+    nodes = [1 + i for i in (element.mirrored if turned else range(element.count))]
+    order = UPRIGHT_FIRST.get(element.count, range(element.count))
+    nodes = [nodes[list(order).index(k)] for k in range(element.count)]  # as Nastran lists them
+    loaded = element.sides[-1][:3:2] if element.corners > 4 else (element.sides[0][0], 3)
+    solid = card(CARDS[element.shape.name], 1, 1, *nodes)
+    load = card("PLOAD4", 7, 1, 1.0, "", "", "", *[1 + k for k in loaded])
+    mesh = read(tmp_path, "\n".join(["BEGIN BULK", *grids, *solid, *load, "ENDDATA", ""]))
+    assert mesh.volumes["part1"] == pytest.approx(VOLUMES[element.shape.name] * 1e-9)
+    assert bool(mesh.notes) == turned
+    corners = element.nodes[list(element.sides[0 if element.corners == 4 else -1])]
+    centre, normal, _ = face_centre(mesh.points, mesh.face("PLOAD4_7"))
+    assert centre == pytest.approx(1e-3 * corners.mean(axis=0), abs=1e-9)
+    assert normal @ (centre - 1e-3 * element.nodes.mean(axis=0)) > 0

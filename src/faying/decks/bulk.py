@@ -91,6 +91,8 @@ def _fields(line: str, where: str) -> tuple[str, list[str]]:
         return "DEQATN", [""]
     if "," in line:
         first, *rest = (word.strip() for word in line.split(","))
+        if re.fullmatch(r"[A-Za-z]\w* +\d+", first):  # blanks part fields as well
+            first, rest = first.split()[0], [first.split()[1], *rest]
         limit = 4 if first.endswith("*") or first.startswith("*") else 8
         if len(rest) > limit + 1:
             raise ReadError(f"{where}: {len(rest)} fields, {limit} fit; a number has a decimal point, not a comma")

@@ -33,7 +33,8 @@ from faying.decks.raw import (
 from faying.decks.vocabulary import left_out
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
-from faying.typing import Index
+from faying.fe.solids import least_jacobian
+from faying.typing import Array, Index
 
 # commands of the case control whose sets are of elements
 OF_ELEMENTS = (
@@ -58,7 +59,8 @@ def read(path: Path) -> RawMesh:
         f"{count} cards {name} are left out, with their stiffness and mass" for name, count in bulk.left_out.items()
     ]
     notes += left_out(bulk.constraints, "")
-    numbers = index(bulk.grids)
+    numbers, points = index(bulk.grids), np.array([bulk.place(grid) for grid in bulk.grids])
+    notes += _turned(bulk, numbers, points)
     for name, some in case.items():
         single = index(first for first, last in some if first == last)
         if len(np.setdiff1d(single, numbers)):
@@ -74,7 +76,7 @@ def read(path: Path) -> RawMesh:
     notes += not_in_file("PLOAD4", "elements", map(int, loaded), bulk.solid.keys() | bulk.others)
     return RawMesh(
         numbers=numbers,
-        points=np.array([bulk.place(grid) for grid in bulk.grids]),
+        points=points,
         elements=gathered(bulk.solids),
         bodies={key: index(some) for key, some in bulk.bodies.items()},
         node_sets={name: _within(some, numbers) for name, some in bulk.sets.items()},
@@ -85,6 +87,19 @@ def read(path: Path) -> RawMesh:
         turned=index(n for n, (_, _, cd) in bulk.grids.items() if (bulk.default[1] if cd is None else cd) != 0),
         notes=tuple(notes),
     )
+
+
+def _turned(bulk: Bulk, numbers: Index, points: Array) -> list[str]:
+    """Turn the solids whose nodes run in the other sense, which Nastran takes as well; say how many."""
+    count, order = 0, np.argsort(numbers)
+    for kind, some in bulk.solids.items():
+        given, mirrored = np.array([nodes for _, nodes in some]), list(KINDS[kind].mirrored)
+        cells = order[np.minimum(np.searchsorted(numbers[order], given), len(numbers) - 1)]
+        wrong = np.flatnonzero((numbers[cells] == given).all(axis=1) & (least_jacobian(points, cells) <= 0))
+        for k in wrong[least_jacobian(points, cells[wrong][:, mirrored]) > 0]:
+            some[k][1][:] = given[k, mirrored].tolist()
+            count += 1
+    return [f"{count} solids are numbered in the other sense; they are turned, as Nastran does"] if count else []
 
 
 def _within(ranges: list[tuple[int, int]], numbers: Index) -> Index:

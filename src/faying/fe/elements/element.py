@@ -104,6 +104,12 @@ class Element:
             for side in self.shape.sides
         )
 
+    @property
+    def mirrored(self) -> tuple[int, ...]:
+        """Nodes in the order that has the first two local axes exchanged: of the same body, numbered inside out."""
+        nodes = self.nodes.tolist()
+        return tuple(nodes.index([y, x, *rest]) for x, y, *rest in nodes)
+
     def at(self, local: Array) -> tuple[Array, Array]:
         """Shape functions (q, a) and gradients (q, a, d) at local coordinates (d, q)."""
         places, exponents, coefficients = local.T, np.array(self.exponents), _coefficients(self)
