@@ -1,5 +1,7 @@
 """Form of faces: shapes, random forms, flatness, maps of both faces; what does not depend on mesh or unit."""
 
+import json
+import zipfile
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import faying
+from faying.cli import main
 from faying.form.face_axes import FaceAxes
 from faying.form.flatness import minimum_zone
 from faying.form.form import Form, random_depth
@@ -175,6 +178,28 @@ def test_a_scan_is_averaged_to_its_form(tmp_path):
     fit = faying.fit_form(places, found)
     assert fit.crown_along == pytest.approx(-5e-6, rel=0.02)
     assert abs(fit.crown_across) < 1e-7
+
+
+def test_one_of_several_maps_of_heights_is_named(tmp_path, capsys):
+    """A container of two scans, a bowl of 10 um and one of twice that; `faying form` takes the one that is named."""
+    pytest.importorskip("SurfaceTopography", reason="reads containers")
+    y, x = np.mgrid[-1:1:32j, -1:1:32j]
+    lines = ["surfaces:", "- name: one", "  topographies:"]
+    path = tmp_path / "two.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        for k in (1, 2):
+            lines += [f"  - {{name: map {k}, datafile: {{original: {k}.txt}}, unit: um, size: [8000, 8000]}}"]
+            archive.writestr(
+                f"{k}.txt", "\n".join(" ".join(map(str, row)) for row in (10 * k * (x**2 + y**2)).tolist())
+            )
+        archive.writestr("meta.yml", "\n".join(lines) + "\n")
+    with pytest.raises(faying.InputError, match="holds 2 maps of heights: 'map 1', 'map 2'"):
+        read_heights(path)
+    one, two = (read_heights(path, channel=f"map {k}")[1] for k in (1, 2))
+    assert np.ptp(two) == pytest.approx(2 * np.ptp(one))
+    with pytest.raises(SystemExit, match="0"):
+        main(["form", str(path), "--channel", "map 2", "--json"])
+    assert json.loads(capsys.readouterr().out)["crown_along"]["values"] == pytest.approx(-20e-6)
 
 
 def test_a_fit_finds_the_shapes_of_a_form():

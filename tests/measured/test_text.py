@@ -85,6 +85,7 @@ G = 9.80665
         ("f/kHz,|H| mag/dB,phase/°", (LINES / 1e3, 20 * np.log10(abs(TRUE)), PHASE)),
         ("Freq [Hz],Mag [dB re 1 g/N],Phase [deg]", (LINES, 20 * np.log10(abs(TRUE) / G), PHASE)),
         ("f [Hz],Accelerance [dB re 1e-6 (m/s^2)/(1 N)],Phase [deg]", (LINES, 20 * np.log10(abs(TRUE)) + 120, PHASE)),
+        ("f [Hz];Magnitude [dB/10.0u (m/s²)/N];Phase [°]", (LINES, 20 * np.log10(abs(TRUE)) + 100, PHASE)),
         ("Frequency kHz,dB re 1 m/s^2/N,Phase deg", (LINES / 1e3, 20 * np.log10(abs(TRUE)), PHASE)),
         ("f [Hz],Mag dB (re 10 (m/s^2)/kN),Phase [deg]", (LINES, 20 * np.log10(abs(TRUE)) + 40, PHASE)),
         ("omega [rad/s]\tRe [mm/s^2/N]\tIm [mm/s^2/N]", (2 * np.pi * LINES, 1e3 * TRUE.real, 1e3 * TRUE.imag)),
@@ -198,6 +199,8 @@ def test_a_column_of_coherence_goes_with_its_frf(tmp_path):
 
 def test_a_line_at_0_hz_without_a_number_is_left_out(tmp_path):
     path = tmp_path / "frf.csv"
+    path.write_text("frequency [Hz],mag [m/N],phase [deg]\n0,inf,0\n1,2,90\n2,3,0\n")
+    np.testing.assert_allclose(read_frf_text([path], quantity="receptance").values[0, 0], [2j, 3], atol=1e-15)
     path.write_text("frequency [Hz],re [m/N],im [m/N]\n0,NaN,NaN\n1,2,3\n2,3,4\n")
     found = read_frf_text([path], quantity="receptance")
     np.testing.assert_array_equal(found.frequency, [1, 2])

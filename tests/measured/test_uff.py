@@ -8,6 +8,7 @@ import pyuff
 from faying import FRF, InputError, ReadError, read_uff, write_uff
 from faying.measured.frf import Dof
 from faying.measured.modes import ModeSet
+from faying.measured.tested import read_test
 
 SYSTEM = [[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]]  # rows: axes turned by 90 degrees about z
 
@@ -239,6 +240,18 @@ def test_a_line_at_0_hz_without_a_number_is_left_out_of_all_frfs(tmp_path, word)
     path.write_text(text.replace("8.00000000000e+00   2.00000000000e+00", f"{word:>17}{word:>20}", 1))
     with pytest.raises(ReadError, match="NaN or infinite"):
         read_uff(path)
+
+
+def test_a_test_written_with_the_other_sign_of_time_is_turned_for_the_comparison(tmp_path, synthetic):
+    frf, _ = synthetic(((60.0, 0.01), (180.0, 0.005)), last=300.0, outputs=2)
+    sets = [
+        function(x=frf.frequency, data=values.conj(), rsp_node=k, ref_node=1, ref_dir=3)
+        for k, values in enumerate(frf.values[:, 0], 1)
+    ]
+    found = read_test(raw(tmp_path / "a.uff", *sets))
+    np.testing.assert_allclose(found.modes.frequencies, [60, 180], rtol=1e-5)
+    np.testing.assert_allclose(found.frf.values, frf.values[:, :, 1:], rtol=1e-5, atol=1e-9)
+    assert any("their conjugates are taken" in words for words in found.notes)
 
 
 def test_positions_in_the_units_of_the_file(tmp_path):

@@ -170,13 +170,15 @@ def _xy(unit: str | None) -> tuple[Wanted, Wanted]:
     )
 
 
-def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None = None) -> tuple[Array, Array]:
+def read_heights(
+    path: Path, *, xy_unit: str | None = None, z_unit: str | None = None, channel: str | None = None
+) -> tuple[Array, Array]:
     """Read measured form: places (n, 2) [m] and heights, or gaps, (n,) [m].
 
     A text of numbers holds three columns x, y, z, anywhere; a heading may name them in any order and
     state their units, else both are given. Any other is a scan, whose spikes are left out and which is averaged over
-    cells to at most `MAX_PLACES` places along each side; units are given where it states none. Raises InputError and
-    ReadError.
+    cells to at most `MAX_PLACES` places along each side; units are given where it states none, and the channel where
+    it holds several maps. Raises InputError and ReadError.
     """
     kind = kind_of(path, "numbers")
     if kind is not None and "numbers" in kind.serves:
@@ -187,7 +189,7 @@ def read_heights(path: Path, *, xy_unit: str | None = None, z_unit: str | None =
     from faying.surface.files.read import read_scan
     from faying.surface.form import find_spikes, levelled
 
-    scan: Any = read_scan(path, xy_unit=xy_unit, z_unit=z_unit)
+    scan: Any = read_scan(path, xy_unit=xy_unit, z_unit=z_unit, channel=channel)
     if scan.heights.ndim != 2:
         raise InputError(f"{path.name} is a profile; the form of a face takes an areal scan or a list of points")
     spikes = find_spikes(levelled(scan))

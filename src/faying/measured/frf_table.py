@@ -27,6 +27,9 @@ MAX_PHASE = 1e6  # rad
 PAIRS = {("real", "imaginary"): "parts", ("magnitude", "phase"): "polar"}
 FORM = "a table of FRFs looks like: frequency [Hz],real [m/s^2/N],imaginary [m/s^2/N] or frequency [Hz],magnitude [dB],"
 FORM += "phase [deg]"
+# the number of a reference may carry a prefix, as in "dB/1.00u (m/s^2)/N"
+REFERENCE = re.compile(r"(\d+\.?\d*(?:[eE][-+]?\d+)?)?([pnu](?=\s))?\s*(.*)")
+PREFIXES = {"": 1.0, "p": 1e-12, "n": 1e-9, "u": 1e-6}
 NO_UNIT = ("", "-", "1", "lin", "linear")
 
 
@@ -52,7 +55,7 @@ class Pair:
         most = float(np.abs(self.turn * b).max(initial=0.0))
         if most > MAX_PHASE:
             raise ReadError(f"a phase of {most:.3g} rad has lost its digits; is the column a phase?")
-        size = 10 ** (a / 20) if self.decibels else a
+        size = np.where(np.isfinite(a), 10 ** (a / 20) if self.decibels else a, np.nan)
         return np.asarray(self.scales[0] * size * np.exp(1j * self.turn * b))
 
 
@@ -67,11 +70,6 @@ class FrfColumns:
     coherence: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
     named: bool = True
-
-    @property
-    def width(self) -> int:
-        """Numbers in a row."""
-        return 1 + 2 * len(self.pairs) + len(self.coherence)
 
 
 def plain_layout(width: int) -> FrfColumns:
@@ -195,9 +193,10 @@ def _pair(
 def _reference(text: str, cell: Cell, quantity: str, where: str, notes: list[str]) -> float:
     """SI value at 0 dB, from words such as "re 1 m/s^2/N" or "(re 1e-6 (m/s^2)/(1 N))"."""
     bare = re.sub(r"^\)?\s*[\[(]\s*(re\b.*)[\])]$", r"\1", text.strip(" ,;"))
-    bare = re.sub(r"^(re|ref|rel)\b[.:]*\s*", "", bare)
-    times, unit = re.fullmatch(r"(\d+\.?\d*(?:[eE][-+]?\d+)?)?\s*(.*)", bare).groups()  # type: ignore[union-attr]
-    if not unit and float(times or 1) == 1:
+    bare = re.sub(r"^((re|ref|rel)\b[.:]*|/)\s*", "", bare)
+    number, prefix, unit = REFERENCE.fullmatch(bare).groups()  # type: ignore[union-attr]
+    times = float(number or 1) * PREFIXES[prefix or ""]
+    if not unit and times == 1:
         notes.append(f'{where}: "{cell.text}" states no reference; 0 dB is taken as 1 {UNITS[quantity]}')
         return 1.0
     factor = unit_factor(re.sub(r"\(1(\.0*)?\s+", "(", unit), DIMENSIONS[quantity] + "/N")
@@ -205,7 +204,7 @@ def _reference(text: str, cell: Cell, quantity: str, where: str, notes: list[str
         raise ReadError(
             f'{where}: "{cell.text}": "{bare}" is not a reference of {quantity}; write dB re 1 {DIMENSIONS[quantity]}/N'
         )
-    return float(times or 1) * factor
+    return times * factor
 
 
 def _factor(cell: Cell, quantity: str, where: str, notes: list[str]) -> float:

@@ -76,7 +76,7 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
     lines = [line for _, line in numbered[start:] if not line.startswith("#")]
     if len(lines) < 2:
         raise ReadError(f"{path}: no FRF in it; expected a complex number on each line, or frequency, real, imaginary")
-    if "j" in lines[0] or "i" in lines[0]:
+    if re.search(r"[\d.][ij]\b", lines[0]):
         _refuse_units(above, path)
         if step is None or not step > 0:
             raise InputError(
@@ -93,7 +93,7 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
         refuse_decimal_comma(line, str(path))
     table = [[_number(float, path, cell) for cell in re.split(r"[,;\s]+", line.rstrip(",; \t"))] for line in lines]
     layout = _layout(above, len(table[0]), quantity, path)
-    width = layout.width
+    width = 1 + 2 * len(layout.pairs) + len(layout.coherence)
     if not layout.pairs or {len(row) for row in table} != {width}:
         odd = next((len(row) for row in table if len(row) != width), len(table[0]))
         raise ReadError(

@@ -60,13 +60,10 @@ def fit_fractal(
     return plain_fit(scan, method, band=band, degree=degree, spikes=spikes, convention=convention, gamma=gamma)
 
 
-def fit_all(scan: AreaHeights | LineHeights, **options: Any) -> dict[str, FractalFit | str]:
-    """Run every estimator; where one fails its error text stands in place of the fit. Options as in `fit_fractal`."""
-    return fit_each(scan, METHODS, **options)
-
-
-def fit_each(scan: AreaHeights | LineHeights, methods: Iterable[str], **options: Any) -> dict[str, FractalFit | str]:
-    """Run some estimators as `fit_all` runs every one."""
+def fit_all(
+    scan: AreaHeights | LineHeights, *, methods: Iterable[str] = tuple(METHODS), **options: Any
+) -> dict[str, FractalFit | str]:
+    """Run every estimator, or some; where one fails its error text stands in place of the fit. Options as above."""
     out: dict[str, FractalFit | str] = {}
     for method in methods:
         try:

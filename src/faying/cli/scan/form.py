@@ -15,12 +15,11 @@ from faying.units import show
 @click.argument("file", type=FILE)
 @click.option("--xy-unit", help='Unit of x and y where the file states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights or gaps where the file states none, for example "um".')
+@click.option("--channel", help="Name of the map of heights, where the file holds several.")
 @click.option("--gap", "is_gap", is_flag=True, help="The values are gaps between two faces, not heights of one.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of text.")
 @click.option("--plot", type=FILE, help="Write the map (png, pdf, svg).")
-def command(
-    file: Path, xy_unit: str | None, z_unit: str | None, is_gap: bool, as_json: bool, plot: Path | None
-) -> None:
+def command(file: Path, is_gap: bool, as_json: bool, plot: Path | None, **given: str | None) -> None:
     """Flatness, crowns and twist of the form in FILE: a list of points x, y, z (csv, txt, dat, xyz, asc) or a scan."""
     from faying.form import figure as drawing
     from faying.form.fit import fit_form
@@ -31,7 +30,7 @@ def command(
         check_ending(plot)
     if not file.is_file():
         raise ReadError(f"no file {file}")
-    fit = fit_form(*read_heights(file, xy_unit=xy_unit, z_unit=z_unit), is_gap=is_gap)
+    fit = fit_form(*read_heights(file, **given), is_gap=is_gap)
     if plot:
         save(drawing.figure(fit, file.name), plot)
     if as_json:

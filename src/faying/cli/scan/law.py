@@ -88,6 +88,7 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
 @click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
 @click.option("--size", metavar="LENGTHS", help='Size of a scan whose file states none, for example "4 mm x 3 mm".')
 @click.option("--spacing", metavar="LENGTHS", help='Distance of its points, in place of --size, for example "5 um".')
+@click.option("--channel", help="Name of the map of heights, where the file holds several.")
 @click.option(
     "--counter",
     metavar="FILE|same|smooth",
@@ -234,7 +235,7 @@ def faces_of(options: dict[str, Any], numbers: dict[str, Any]) -> RoughPair:
     from faying.contact.two_faces import COUNTERS
     from faying.study.keys.surface import SurfaceChoice
 
-    names = ("scan", "xy_unit", "z_unit", "method")
+    names = ("scan", "xy_unit", "z_unit", "channel", "method")
     sizes: dict[str, Any] = {
         name: lengths(options[name], name=f"--{name}") for name in ("size", "spacing") if options[name]
     }
@@ -331,7 +332,7 @@ def reached(law: ContactLaw, pressures: Array) -> Array:
 
 
 MAX_POINTS = 1_000_000
-OF_SCAN = ("counter", "xy_unit", "z_unit", "size", "spacing")  # options that say how a scan is read
+OF_SCAN = ("counter", "xy_unit", "z_unit", "size", "spacing", "channel")  # options that say how a scan is read
 
 
 def parameter_values(law: ContactLaw) -> dict[str, Any]:

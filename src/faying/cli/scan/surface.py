@@ -29,30 +29,28 @@ from faying.units import lengths, show
 @click.option("--plot", type=NamedPath(dir_okay=False), help="Write a figure (png, pdf, svg).")
 def command(
     file: str,
-    xy_unit: str | None,
-    z_unit: str | None,
     size: str | None,
     spacing: str | None,
-    channel: str | None,
     method: str,
     degree: int,
     keep_spikes: bool,
     test: bool,
     as_json: bool,
     plot: str | None,
+    **given: str | None,
 ) -> None:
     """Roughness, fractal dimension D and fractal roughness G of the scan in FILE."""
     from faying.surface.files.read import read_scan
     from faying.surface.form import prepared
-    from faying.surface.fractal import fit_each
+    from faying.surface.fractal import fit_all
     from faying.surface.roughness import roughness
 
-    given = {"size": size, "spacing": spacing}
-    sizes: dict[str, Any] = {name: lengths(text, name=f"--{name}") for name, text in given.items() if text}
-    scan = read_scan(file, xy_unit=xy_unit, z_unit=z_unit, channel=channel, **sizes)
+    sides = {"size": size, "spacing": spacing}
+    sizes: dict[str, Any] = {name: lengths(text, name=f"--{name}") for name, text in sides.items() if text}
+    scan = read_scan(file, **given, **sizes)
     ready = prepared(scan, degree=degree, spikes=not keep_spikes)
-    methods = METHODS if method == "all" else [method]
-    fits = fit_each(scan, methods, self_test=test, degree=degree, spikes=not keep_spikes)
+    methods = tuple(METHODS) if method == "all" else (method,)
+    fits = fit_all(scan, methods=methods, self_test=test, degree=degree, spikes=not keep_spikes)
     document = describe(scan, ready, roughness(ready), fits)
     if plot:
         from faying.surface.figure import overview

@@ -41,7 +41,7 @@ def _face(table: Table) -> FaceMap | None:
 
     def made() -> FaceMap:
         path, xy, z = (given.pop(key) for key in ("file", "xy_unit", "z_unit"))
-        places, heights = read_heights(path, xy_unit=xy, z_unit=z)
+        places, heights = read_heights(path, xy_unit=xy, z_unit=z, channel=given.pop("channel"))
         return FaceMap(places=places, heights=heights, **given)
 
     return table.made(made)
@@ -59,6 +59,7 @@ HEIGHTS: Declared = {
     "file": Key.file("Scan, or table of x, y, z.", REQUIRED),
     "xy_unit": Key.length_unit("Unit of x and y, where the file states none."),
     "z_unit": Key.length_unit("Unit of the heights, where the file states none."),
+    "channel": Key.text("Name of the map of heights, where the file of the scan holds several.", None),
     "origin": Key.point(
         "Point at which x = y = 0; the middle of the map lies on the middle of the joint where left out."
     ),

@@ -17,10 +17,6 @@ from faying.surface.scan import Profile, Scan
 from faying.text import few
 from faying.units import scale
 
-_BROKEN = (
-    "SurfaceTopography, which reads formats of instruments, is installed but does not start ({fault}); install a "
-    "version for the installed numpy"
-)
 Steps = Callable[[int, int], tuple[float, float]]
 
 
@@ -30,12 +26,13 @@ def _library() -> Any:
             warnings.simplefilter("ignore")
             import SurfaceTopography
             import SurfaceTopography.IO
-    except ModuleNotFoundError as fault:
-        if fault.name == "SurfaceTopography":
-            return None
-        raise ReadError(_BROKEN.format(fault=fault)) from fault
     except ImportError as fault:
-        raise ReadError(_BROKEN.format(fault=fault)) from fault
+        if isinstance(fault, ModuleNotFoundError) and fault.name == "SurfaceTopography":
+            return None
+        raise ReadError(
+            f"SurfaceTopography, which reads formats of instruments, is installed but does not start ({fault}); "
+            "install a version for the installed numpy"
+        ) from fault
     return SurfaceTopography
 
 
