@@ -89,6 +89,24 @@ def test_a_sound_study(folder):
 
 
 @pytest.mark.parametrize(
+    ("more", "warns"),
+    [
+        ("", False),
+        ('[[alternative]]\nlaw = { model = "gw" }\n', False),
+        ('[[alternative]]\nlaw = { model = "jk" }\n', True),
+        ('[joint.form]\nwaviness = { from = "scan" }\n', True),
+    ],
+)
+def test_the_fit_of_D_and_G_is_doubted_where_it_is_used(tmp_path, more, warns):
+    """The study of `faying init`, whose surface obeys no power law: the half-space takes its heights."""
+    template.write(tmp_path / "study.toml")
+    text = (tmp_path / "study.toml").read_text()
+    (tmp_path / "study.toml").write_text(text.replace("\n[[bolt]]", f"\n{more}\n[[bolt]]", 1))
+    notes = [one.text for one in check(tmp_path / "study.toml", mesh=False).findings if one.code == "surface"]
+    assert any("power law" in text for text in notes) == warns
+
+
+@pytest.mark.parametrize(
     ("old", "other", "code", "words", "line"),
     [
         ('size = "5 mm"', "size = 5", "keys", "geometry.size = 5", "size = 5"),

@@ -7,6 +7,7 @@ import numpy as np
 
 from faying.case.hammer import Hammer
 from faying.case.places import named_points, on_structure
+from faying.contact.mates import takes_fit
 from faying.errors import InputError
 from faying.fe.bonded import bonded_mesh
 from faying.fe.interface import Interface, join
@@ -89,7 +90,7 @@ class Case:
         structure = structure_of(study, checked_mesh(study), surfaces, laws)
         for _, what, point in named_points(study):
             on_structure(what, point, structure.mesh)
-        notes = [Note(code="surface", text=text) for surface in surfaces for text in surface.warnings]
+        notes = [Note(code="surface", text=text) for text in fit_warnings(study, surfaces)]
         known = {note.text for note in notes}
         tables = [file for file in study.files if file != study.geometry.file]  # readers of meshes look for themselves
         ends = [text for file in tables for text in end_of(file)]
@@ -161,6 +162,19 @@ def read_for(study: Study, surfaces: Sequence[Surface]) -> Read:
     """The surfaces of a study's joints by what they were read from."""
     choices = (joint.surface or study.surface for joint in study.joints)
     return {choice: one for choice, one in zip(choices, surfaces, strict=True) if choice is not None}
+
+
+def fit_warnings(study: Study, surfaces: Sequence[Surface]) -> tuple[str, ...]:
+    """What the fits of D and G warn of, where a law takes them or waves go on with their spectrum."""
+    others = [one.law for one in study.alternatives if one.law is not None]
+    out: list[str] = []
+    for joint, surface in zip(study.joints, surfaces, strict=True):
+        faces, laws = surface.faces, (study.law_of(joint), *others)
+        fitted = faces is not None and any(takes_fit(law.kind, law.given, faces) for law in laws)
+        waves = None if joint.form is None else joint.form.waviness
+        if fitted or (waves is not None and waves.Wq is None):
+            out += surface.warnings
+    return tuple(dict.fromkeys(out))
 
 
 def surfaces_of(study: Study, read: Read | None = None) -> tuple[Surface, ...]:

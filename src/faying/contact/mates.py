@@ -211,9 +211,7 @@ class Mates(Summary):
     def rough_for(self, kind: LawKind, given: Mapping[str, object] | None = None) -> RoughSurface:
         """What a law is made from where these entries are given: with D and G only where it takes them."""
         faces = self.faces
-        solved = kind.label == AUTO and isinstance(faces.face, Scan)  # the half-space and the laws of summits
-        fitted = kind.takes(OF_FACES, given or {}) and not solved
-        surface = faces.rough if fitted else faces.unfitted
+        surface = faces.rough if takes_fit(kind, given or {}, faces) else faces.unfitted
         return surface if self.progress is None else replace(surface, progress=self.progress)
 
     def choose(self, name: str | LawKind = AUTO, given: Mapping[str, object] | None = None) -> Choice:
@@ -379,6 +377,11 @@ def pair_of(materials: object) -> ContactPair:
         return ContactPair(materials[0], materials[1])
     one = material_of(materials)
     return ContactPair(one, one)
+
+
+def takes_fit(kind: LawKind, given: Mapping[str, object], faces: RoughPair) -> bool:
+    """Whether a law takes D and G from faces; "auto" solves the contact of a scan, or takes a law of its summits."""
+    return kind.takes(OF_FACES, given) and not (kind.label == AUTO and isinstance(faces.face, Scan))
 
 
 def line_of(faces: RoughPair, pair: ContactPair) -> str:

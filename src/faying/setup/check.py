@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeVar, get_args
 
 from faying.bolt.bolt import Bolt, BoltPlace, each_in_its_place
 from faying.bolt.solid_bolt import SolidBolt, SolidPlace
-from faying.case.case import SIZES, interface_of, materials_of, name_faults, surfaces_of
+from faying.case.case import SIZES, fit_warnings, interface_of, materials_of, name_faults, surfaces_of
 from faying.case.places import named_points, on_structure
 from faying.errors import FayingError, InputError
 from faying.fe.mesh import Mesh
@@ -299,9 +299,8 @@ def _surfaces(study: Study, found: _Findings) -> tuple[Surface, ...]:
     """The surface of each joint; none where one of them cannot be read, which is a fault."""
     key = "surface" if study.surface is not None else "joint[1].surface"
     out = found.tried("surface", key, partial(surfaces_of, study)) or ()
-    for surface in dict.fromkeys(out):
-        for text in surface.warnings:
-            found.add("note", "surface", text, key)
+    for text in fit_warnings(study, out) if out else ():
+        found.add("note", "surface", text, key)
     return out
 
 

@@ -176,7 +176,7 @@ def command(
         about |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
         click.echo(json_text(document(law, response) | about))
         return
-    click.echo(folded("\n".join([*heading(choice, mates), table(law, response, h)])))
+    click.echo(folded("\n".join([*heading(choice, mates, kind, given), table(law, response, h)])))
 
 
 def conducted(law: ContactLaw, response: Response, pair: ContactPair) -> Array:
@@ -188,18 +188,20 @@ def conducted(law: ContactLaw, response: Response, pair: ContactPair) -> Array:
     return heat_conductance(response.k_n, pair)
 
 
-def heading(choice: Choice, mates: Mates | None) -> list[str]:
-    """Both faces, what the scan says of D and G, and why the law was taken."""
+def heading(choice: Choice, mates: Mates | None, kind: LawKind, given: Mapping[str, object]) -> list[str]:
+    """Both faces, what the scan says of D and G where the law takes them, and why the law was taken."""
+    from faying.contact.mates import takes_fit
     from faying.output import table
 
     lines = []
     if mates is not None:
         lines += wrap(f"mates: {mates.line}", WIDTH)
-        fit = mates.faces.fit
+        fitted = takes_fit(kind, given, mates.faces)
+        fit = mates.faces.fit if fitted else None
         if fit is not None:
             rows = [["method", *table.FRACTAL], [fit.method, *table.fractal(asdict(fit))]]
             lines += [f"  {line}".rstrip() for line in table.text(rows, width=WIDTH - 2).splitlines()]
-        lines += [line for text in mates.faces.warnings for line in wrap(f"note: {text}", WIDTH)]
+        lines += [line for text in mates.faces.warnings if fitted for line in wrap(f"note: {text}", WIDTH)]
     if choice.reason:
         lines += wrap(f"law: {choice.reason}", WIDTH)
     return [*lines, ""] if lines else []
