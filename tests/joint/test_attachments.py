@@ -49,6 +49,41 @@ def test_the_mass_of_a_part_is_its_density_times_its_volume():
     assert made.part_masses == pytest.approx([7800 * L * WIDTH * HEIGHT])  # the point mass is none of its own
 
 
+def test_a_beam_on_two_edges_and_one_on_two_points():
+    """Bending pi/(2 L^2) sqrt(EI/rho A) of a beam on two pins, one of which slides: both lie on its lower edges.
+
+    The ends turn about the edges, so that all of it moves along x by the turn times half of the depth h, which adds
+    (pi h/L)^2/2 to the mass. Shear and rotary inertia lower the frequency by (1 + 2.4)/2 (pi r/L)^2, r = h/sqrt(12).
+    """
+    mesh = bar((24, 1, 2))
+    low = sides_on(np.flatnonzero(np.abs(mesh.points[:, 2]) < 1e-9), mesh.parts["bar"], len(mesh.points))
+    mesh = Mesh(
+        points=mesh.points,
+        parts=dict(mesh.parts),
+        faces={**mesh.faces, "low": low},
+        face_part={**mesh.face_part, "low": "bar"},
+    )
+    pin, slide = Support(face="foot", edge="low"), Support(face="tip", edge="low", directions=("y", "z"))
+    assert len(pin.nodes(mesh)) == 3
+    made = Structure(mesh=mesh, materials={"bar": SIMPLE}, joints=(), supports=(pin, slide))
+    assert made.rigid.shape[1] == 0
+    euler = pi / (2 * L**2) * SPEED * HEIGHT / 12**0.5
+    bend = (pi * HEIGHT / L) ** 2
+    assert np.abs(modes(made, 6).frequencies / euler / (1 - bend / 4 - 1.7 * bend / 12) - 1).min() < 2e-3
+    corners = [
+        Support(face=face, edge="low", point=(x, y, 0.0)) for face, x in (("foot", 0), ("tip", L)) for y in (0, WIDTH)
+    ]
+    assert [len(one.nodes(mesh)) for one in corners] == [1] * 4
+    held = Structure(mesh=mesh, materials={"bar": SIMPLE}, joints=(), supports=corners[:1])
+    assert held.rigid.shape[1] == 3  # it turns about a point
+    with pytest.raises(faying.InputError, match="share no edge"):
+        Support(face="foot", edge="tip").nodes(mesh)
+    with pytest.raises(faying.InputError, match="nearest node"):
+        Support(face="foot", point=(0.3, 0.0, 0.0)).nodes(mesh)
+    with pytest.raises(faying.InputError, match="per area"):
+        Support(face="foot", edge="low", stiffness=1e12)
+
+
 def test_a_clamped_bar():
     """Axial (2n - 1) c/4L; bending 1.8751^2/(2 pi L^2) sqrt(EI/rho A), lowered by shear as Timoshenko's beam is."""
     made = structure(supports=(Support(face="foot"),))

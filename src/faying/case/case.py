@@ -283,7 +283,7 @@ def _loose_parts(
 def _idle_bolts(study: Study) -> list[tuple[str, str]]:
     """Bolts that pull on two faces that do not move, so that no joint gets anything of their preload."""
     firm = [one for one in study.supports if one.stiffness is None and set(one.directions) == {"x", "y", "z"}]
-    fixed = {one.face for one in firm}
+    fixed = {one.face for one in firm if one.whole}
     return [
         (
             f"bolt[{k}].faces",
@@ -310,7 +310,9 @@ def named_faces(study: Study) -> list[tuple[str, str, str, str]]:
         for k, dowel in enumerate(study.dowels, 1)
         for wall in dowel.walls
     ]
-    named += [(f"support[{k}].face", "support", one.face, one.face) for k, one in enumerate(study.supports, 1)]
+    for k, one in enumerate(study.supports, 1):
+        held = (("face", one.face), ("edge", one.edge))
+        named += [(f"support[{k}].{key}", "support", face, face) for key, face in held if face is not None]
     masses = [(k, one.face) for k, one in enumerate(study.masses, 1) if one.face is not None]
     named += [(f"mass[{k}].face", "mass", face, face) for k, face in masses]
     for k, load in enumerate(study.load_cases, 1):

@@ -20,20 +20,24 @@ MAX_DISTANCE = 0.02
 @checked_call
 @dataclass(frozen=True, kw_only=True)
 class Support:
-    """A face that is fixed, or on springs per area, in some directions.
+    """A face that is fixed, or on springs per area, in some directions; or an edge or a point of it that is fixed.
 
     Args:
         face: Name of the face.
         directions: Some of x, y, z.
         stiffness: Springs per area [Pa/m], greater than 0; the face is fixed where None.
+        edge: Name of another face: only the edge where the two meet is fixed.
+        point: Place (3,) [m]: only the node of the face, or of the edge, that is nearest to it is fixed.
 
     Raises:
-        InputError: Another direction, or a stiffness that is not positive.
+        InputError: Another direction, a stiffness that is not positive, or one of an edge or a point.
     """
 
     face: str
     directions: tuple[str, ...] = ("x", "y", "z")
     stiffness: float | None = None
+    edge: str | None = None
+    point: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         wrong = [axis for axis in self.directions if axis not in AXES]
@@ -41,12 +45,30 @@ class Support:
             raise InputError(f"support of {self.face!r}: directions {list(self.directions)} should be some of x, y, z")
         if self.stiffness is not None and not self.stiffness > 0:
             raise InputError(f"support of {self.face!r}: stiffness {self.stiffness:g} Pa/m must be positive")
+        if self.stiffness is not None and not self.whole:
+            raise InputError(f"support of {self.face!r}: stiffness is per area; leave it out with edge or point")
+
+    @property
+    def whole(self) -> bool:
+        """Whether all of the face is held."""
+        return self.edge is None and self.point is None
+
+    def nodes(self, mesh: Mesh) -> Index:
+        """The nodes that are held (k,). Raises InputError where the faces share no edge, or the point is far away."""
+        nodes = mesh.face_nodes(self.face)
+        if self.edge is not None:
+            nodes = np.intersect1d(nodes, mesh.face_nodes(self.edge))
+            if not len(nodes):
+                raise InputError(f"support: the faces {self.face!r} and {self.edge!r} share no edge; name two that do")
+        if self.point is not None:
+            nodes = nodes[[nearest(mesh.points[nodes], self.point, mesh.size, f"support of {self.face!r}")]]
+        return nodes
 
     def fixed(self, mesh: Mesh) -> Index:
         """Unknowns that are fixed; none for springs."""
         if self.stiffness is not None:
             return np.zeros(0, dtype=np.int64)
-        nodes = mesh.face_nodes(self.face)
+        nodes = self.nodes(mesh)
         return np.sort((3 * nodes[:, None] + np.array([AXES[axis] for axis in self.directions])).ravel())
 
     def springs(self, mesh: Mesh) -> Any | None:
@@ -111,10 +133,15 @@ class PointMass:
 
 def nearest_node(mesh: Mesh, point: tuple[float, float, float], what: str) -> int:
     """Index of the node nearest to a point [m]. Raises InputError where none is near."""
-    distance = np.linalg.norm(mesh.points - np.array(point), axis=1)
+    return nearest(mesh.points, point, mesh.size, what)
+
+
+def nearest(places: Array, point: tuple[float, float, float], size: float, what: str) -> int:
+    """Index of the place (n, 3) nearest to a point [m]. Raises InputError where it is far for a size [m]."""
+    distance = np.linalg.norm(places - np.array(point), axis=1)
     node = int(np.argmin(distance))
-    if distance[node] > MAX_DISTANCE * mesh.size:
-        raise InputError(too_far(what, point, float(distance[node]), mesh.points.min(axis=0), mesh.points.max(axis=0)))
+    if distance[node] > MAX_DISTANCE * size:
+        raise InputError(too_far(what, point, float(distance[node]), places.min(axis=0), places.max(axis=0)))
     return node
 
 

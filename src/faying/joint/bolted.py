@@ -73,7 +73,8 @@ class BoltedStructure(Summary):
             for wall in dowel.walls:
                 known_face(mesh, wall, f"dowel {dowel.name!r}")
         for support in supports:
-            known_face(mesh, support.face, "support")
+            for face in filter(None, (support.face, support.edge)):
+                known_face(mesh, face, "support")
         placed = tuple(
             joint.fitted(mesh, of_parts, number) if isinstance(joint, Joint) else joint
             for number, joint in enumerate(joints, start=1)

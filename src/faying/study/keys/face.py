@@ -35,13 +35,13 @@ def read_selector(table: Table) -> Selector | None:
     return Selector(part=part, **given | {"within": given["within"] or WITHIN})
 
 
-def face_name(table: Table, label: str) -> str | None:
+def face_name(table: Table, label: str, key: str = "face") -> str | None:
     """Take a face: its name, or a selector, whose face gets the name `label`."""
 
     def named(value: Any, where: str) -> str:
         return _name(table, value, where, label) if isinstance(value, Mapping) else text(value, where)
 
-    name: str | None = table.take("face", named)
+    name: str | None = table.take(key, named)
     return name
 
 

@@ -12,7 +12,8 @@ from faying.study.keys.face import face_name, one_face
 def read_support(table: Table) -> Support | None:
     """Read one [[support]]; None where its faults leave none."""
     face = face_name(table, table.where)
-    given = {key: table.get(key) for key in ("directions", "stiffness")}
+    given = {key: table.get(key) for key in ("directions", "stiffness", "point")}
+    given["edge"] = face_name(table, f"{table.where}.edge", "edge")
     return None if face is None else table.made(lambda: Support(face=face, **given))
 
 
@@ -31,6 +32,8 @@ def _axes(value: Any, name: str) -> tuple[str, ...]:
 
 SUPPORT: Declared = {
     "face": one_face("The face.", REQUIRED),
+    "edge": one_face("Another face of the part: only the edge where the two meet is held."),
+    "point": Key.point("Only the node of the face, or of the edge, that is nearest to this place is held."),
     "directions": Key(
         'some of "x", "y", "z" in a list',
         listed({"enum": ["x", "y", "z"]}, 1, 3),
