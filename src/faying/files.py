@@ -312,7 +312,7 @@ _DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d+,\d+(?:[eE][-+]?\d+)?(?=\s*[;\t]|[ ]
 
 def refuse_decimal_comma(line: str, where: str) -> None:
     """Raise ReadError where numbers are written with a decimal comma: other separators stand between the numbers."""
-    apart = re.search(r"[\d.]\s*[;\t]|[\d.] +[-+.\d]", re.sub(r"\s*,\s+|\s+,", ",", line))
+    apart = re.search(r"[\d.]\s*[;\t]|[\d.] +[-+.\d]", re.sub(r"(?<!\s)\s*,\s+|(?<!\s)\s+,", ",", line))
     if apart and _DECIMAL_COMMA.search(line):
         raise ReadError(
             f"{where}: {line.strip()[:60]!r} has decimal commas; write decimal points, as in 4.5, and keep the comma "
