@@ -29,7 +29,7 @@ class FileKind:
     reader: str = ""
 
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d+)?"
 # two numbers or more in a line
 _ROW = rf"(?:[ \t]*(?:(?:#|\*\*).*)?\n)*[ \t]*{_NUMBER}(?:[ \t]*+[,;]|[ \t])[ \t]*+{_NUMBER}"
 _POINTS = rf"(?:(?:[ \t]*(?:#.*)?\n)*[ \t\"']*[xyz]\b.*\n)?{_ROW}"

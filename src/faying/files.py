@@ -226,9 +226,15 @@ def locked(folder: Path, target: Path, remedy: str) -> IO[str]:
                 if os.path.samestat(os.fstat(file.fileno()), path.stat()):
                     break
             file.close()  # whoever held it has just removed it
-        file.truncate(0)
-        file.write(f"process {os.getpid()} on {socket.gethostname()}")
-        file.flush()
+        try:
+            file.truncate(0)
+            file.write(f"process {os.getpid()} on {socket.gethostname()}")
+            file.flush()
+        except OSError:  # the disk is full; what else is in the folder stays
+            path.unlink()
+            with suppress(OSError):
+                file.close()
+            raise
     except OSError as fault:
         with suppress(OSError):  # it holds something
             folder.rmdir()

@@ -55,7 +55,7 @@ COMMON = {
     "1/K": {"1/K": 1.0},
 }
 
-NUMBER = re.compile(r"\s*+([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*+((?:.*\S)?)\s*+", re.DOTALL)
+NUMBER = re.compile(r"\s*+([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*+((?:.*\S)?)\s*+", re.DOTALL)
 # a unit is names with whole powers, joined by * / . or a blank, maybe in brackets; "1/" may stand before one
 _NAME = r"[^\W\d_]++(?:_\w+)?(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"  # ++: letters are not divided in every way
 UNIT = re.compile(rf"(?:\s|[*/·.()]|1(?=\s*/)|{_NAME})*+|%")
