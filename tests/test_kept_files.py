@@ -253,6 +253,13 @@ def test_outputs_that_are_not_plain_files_stay_what_they_are(tmp_path):
     with subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True) as reader:
         files.write_text(pipe, "through")
         assert reader.communicate(timeout=10)[0] == "through"
+    with subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True) as reader:
+        with files.together(tmp_path, "give another") as hidden:
+            (hidden / "pipe").write_text("with others")
+            (hidden / "link.csv").write_text("newer")
+        assert reader.communicate(timeout=10)[0] == "with others"
+    assert link.is_symlink()
+    assert target.read_text() == "newer"
     assert pipe.is_fifo()
     assert sorted(one.name for one in tmp_path.iterdir()) == ["file.csv", "link.csv", "pipe"]
 

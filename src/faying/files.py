@@ -35,16 +35,21 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
         write(temporary)
         with temporary.open("rb+") as file:  # on the disk before it is renamed, so that a power cut finds it whole
             os.fsync(file.fileno())
-        if device:
-            path.write_bytes(temporary.read_bytes())
-        else:
-            os.replace(temporary, path)
+        _put(temporary, path)
     except OSError as fault:
         raise InputError(f"cannot write {path}: {fault.strerror or fault}") from None
     finally:
         with suppress(OSError):  # on a read-only disk nothing was made, and nothing can be removed
             temporary.unlink(missing_ok=True)
     return path
+
+
+def _put(file: Path, path: Path) -> None:
+    """Move a file to its place: a link is followed, and a device or a pipe is written to."""
+    if path.exists() and not path.is_file() and not path.is_dir():
+        path.write_bytes(file.read_bytes())
+    else:
+        os.replace(file, path.resolve())
 
 
 SEAL = b"FAYING-SHA256 "  # behind the bytes that it is the checksum of, with 64 digits
@@ -188,7 +193,7 @@ def _appear(hidden: Path, folder: Path, files: Sequence[Path]) -> None:
     try:
         folder.mkdir(exist_ok=True)
         for file in files:
-            os.replace(file, folder / file.name)
+            _put(file, folder / file.name)
     except OSError as fault:
         raise InputError(f"cannot write in {folder}: {fault.strerror or fault}") from None
 
