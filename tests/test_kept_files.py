@@ -1,5 +1,6 @@
 """Files that Faying keeps: whole, as they were written, or not used; foreign ones cannot hang or kill it."""
 
+import errno
 import json
 import os
 import re
@@ -252,6 +253,13 @@ def test_outputs_that_are_not_plain_files_stay_what_they_are(tmp_path):
     with subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True) as reader:
         files.write_text(pipe, "through")
         assert reader.communicate(timeout=10)[0] == "through"
+    with subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True) as reader:
+        with files.together(tmp_path, "give another") as hidden:
+            (hidden / "pipe").write_text("with others")
+            (hidden / "link.csv").write_text("newer")
+        assert reader.communicate(timeout=10)[0] == "with others"
+    assert link.is_symlink()
+    assert target.read_text() == "newer"
     assert pipe.is_fifo()
     assert sorted(one.name for one in tmp_path.iterdir()) == ["file.csv", "link.csv", "pipe"]
 
@@ -301,6 +309,23 @@ def test_a_stop_while_the_hidden_folder_is_made_or_removed(tmp_path, monkeypatch
     finally:
         signal.signal(number, before)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_is_full_when_the_hidden_folder_is_made(tmp_path, monkeypatch):
+    """Nothing is left of it; what long work has kept in a folder stays there."""
+
+    def full():
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(socket, "gethostname", full)
+    words = "cannot write in .*No space left on device; give another"
+    with pytest.raises(faying.InputError, match=words), files.together(tmp_path / "results", "give another"):
+        pass
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "done.npz").write_text("an hour's work")
+    with pytest.raises(faying.InputError, match=words):
+        files.locked(tmp_path, tmp_path, "give another")
+    assert [one.name for one in tmp_path.iterdir()] == ["done.npz"]
 
 
 def test_a_link_that_leads_nowhere(tmp_path):

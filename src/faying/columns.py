@@ -23,7 +23,7 @@ LINE_MEMORY = 450  # B of a line of numbers beside its text while a table is rea
 
 
 MARKS = ("\t", ";", ",")
-_BRACKETS = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\))\s*")
+_BRACKETS = re.compile(r"(.*?)(?:\[(.{0,99})\]|\((.{0,99})\))\s*")  # no unit is longer
 _LEVEL = re.compile(r"([^\[(]*?)\s*\b(dB\b.*)", re.IGNORECASE)  # decibels, with a reference in brackets or without
 _WORD = re.compile(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?")
 _SIGNS = (("µ", "u"), ("μ", "u"), ("°", "deg"), ("²", "^2"), ("\ufffd", "^2"), ("**", "^"), ("·", "*"), ("⋅", "*"))

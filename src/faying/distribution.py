@@ -19,8 +19,8 @@ FACTOR_SCORE = 1.6448536269514722  # standard normal score of 95 %: a factor spa
 MOST_SD_LN, MOST_FACTOR = 10.0, 1e6  # of a lognormal: beyond, it spans what no number has
 UNSEEN = 6.0  # standard deviations from which a cut is not worth a word
 SIGN = r"\+-|\+/-|±"
-_RANGE = re.compile(r"\s*([+-]?[0-9.].*?)\s+to\s+([+-]?[0-9.].*?)\s*", re.DOTALL)
-_PLUS_MINUS = re.compile(rf"\s*([+-]?[0-9.].*?)\s*(?:{SIGN})\s*(.*?)\s*", re.DOTALL)
+_RANGE = re.compile(r"([+-]?[0-9.].*?) to ([+-]?[0-9.].*)")
+_PLUS_MINUS = re.compile(rf"([+-]?[0-9.].*?) ?(?:{SIGN}) ?(.*)")
 # what a table of each distribution needs, and what it may hold besides
 _KEYS = {
     "normal": (("mean", "sd"), ("low", "high")),
@@ -296,7 +296,13 @@ class Distribution:
 
 def uncertain_text(value: object) -> bool:
     """Whether something is text in one of the two short forms, "0.1 to 0.6" or "200 GPa +- 4 GPa"."""
-    return isinstance(value, str) and (_PLUS_MINUS.fullmatch(value) or _RANGE.fullmatch(value)) is not None
+    found = isinstance(value, str) and (_matched(_PLUS_MINUS, value) or _matched(_RANGE, value))
+    return bool(found)
+
+
+def _matched(form: re.Pattern[str], value: str) -> re.Match[str] | None:
+    """The parts of a text in a form, however many blanks it has."""
+    return form.fullmatch(" ".join(value.split()))
 
 
 def _show(value: float, unit: str) -> str:
@@ -319,10 +325,10 @@ def _number(value: object, unit: str, name: str) -> float:
 def _of_text(value: object, unit: str, name: str) -> dict[str, Any]:
     if isinstance(value, str):
         try:
-            if found := _PLUS_MINUS.fullmatch(value):
+            if found := _matched(_PLUS_MINUS, value):
                 centre = _number(found.group(1), unit, name)
                 return {"kind": "normal", "centre": centre, "spread": _sd(found.group(2), centre, unit, name)}
-            if found := _RANGE.fullmatch(value):
+            if found := _matched(_RANGE, value):
                 low, high = (_number(part, unit, name) for part in found.groups())
                 return _uniform(low, high, name)
         except InputError as fault:

@@ -29,8 +29,9 @@ class FileKind:
     reader: str = ""
 
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
-_ROW = rf"(?:[ \t]*(?:(?:#|\*\*).*)?\n)*[ \t]*{_NUMBER}[ \t]*[,; \t][ \t]*{_NUMBER}"  # two numbers or more in a line
+_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d+)?"
+# two numbers or more in a line
+_ROW = rf"(?:[ \t]*(?:(?:#|\*\*).*)?\n)*[ \t]*{_NUMBER}(?:[ \t]*+[,;]|[ \t])[ \t]*+{_NUMBER}"
 _POINTS = rf"(?:(?:[ \t]*(?:#.*)?\n)*[ \t\"']*[xyz]\b.*\n)?{_ROW}"
 _OPERATORS = r"\*(?:SET|GET|DIM|DO|IF|USE|CREATE|CFOPEN)"  # of MAPDL's language
 _COMMANDS = r"/(?:BATCH|COM|PREP7|NOPR|TITLE|FILNAME|WB|SOLU|CLEAR|UNITS|CONFIG)|FINI(?:SH)?"

@@ -35,16 +35,21 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
         write(temporary)
         with temporary.open("rb+") as file:  # on the disk before it is renamed, so that a power cut finds it whole
             os.fsync(file.fileno())
-        if device:
-            path.write_bytes(temporary.read_bytes())
-        else:
-            os.replace(temporary, path)
+        _put(temporary, path)
     except OSError as fault:
         raise InputError(f"cannot write {path}: {fault.strerror or fault}") from None
     finally:
         with suppress(OSError):  # on a read-only disk nothing was made, and nothing can be removed
             temporary.unlink(missing_ok=True)
     return path
+
+
+def _put(file: Path, path: Path) -> None:
+    """Move a file to its place: a link is followed, and a device or a pipe is written to."""
+    if path.exists() and not path.is_file() and not path.is_dir():
+        path.write_bytes(file.read_bytes())
+    else:
+        os.replace(file, path.resolve())
 
 
 SEAL = b"FAYING-SHA256 "  # behind the bytes that it is the checksum of, with 64 digits
@@ -188,7 +193,7 @@ def _appear(hidden: Path, folder: Path, files: Sequence[Path]) -> None:
     try:
         folder.mkdir(exist_ok=True)
         for file in files:
-            os.replace(file, folder / file.name)
+            _put(file, folder / file.name)
     except OSError as fault:
         raise InputError(f"cannot write in {folder}: {fault.strerror or fault}") from None
 
@@ -226,9 +231,15 @@ def locked(folder: Path, target: Path, remedy: str) -> IO[str]:
                 if os.path.samestat(os.fstat(file.fileno()), path.stat()):
                     break
             file.close()  # whoever held it has just removed it
-        file.truncate(0)
-        file.write(f"process {os.getpid()} on {socket.gethostname()}")
-        file.flush()
+        try:
+            file.truncate(0)
+            file.write(f"process {os.getpid()} on {socket.gethostname()}")
+            file.flush()
+        except OSError:  # the disk is full; what else is in the folder stays
+            path.unlink()
+            with suppress(OSError):
+                file.close()
+            raise
     except OSError as fault:
         with suppress(OSError):  # it holds something
             folder.rmdir()
@@ -312,7 +323,7 @@ _DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d+,\d+(?:[eE][-+]?\d+)?(?=\s*[;\t]|[ ]
 
 def refuse_decimal_comma(line: str, where: str) -> None:
     """Raise ReadError where numbers are written with a decimal comma: other separators stand between the numbers."""
-    apart = re.search(r"[\d.]\s*[;\t]|[\d.] +[-+.\d]", re.sub(r"\s*,\s+|\s+,", ",", line))
+    apart = re.search(r"[\d.]\s*[;\t]|[\d.] +[-+.\d]", re.sub(r"(?<!\s)\s*,\s+|(?<!\s)\s+,", ",", line))
     if apart and _DECIMAL_COMMA.search(line):
         raise ReadError(
             f"{where}: {line.strip()[:60]!r} has decimal commas; write decimal points, as in 4.5, and keep the comma "

@@ -14,7 +14,7 @@ from faying.typing import Index
 MAX_NAMES = 6
 # a dotted name of forty keys: a study nests four deep, and the parser's memory grows with their square
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
-DEEP = re.compile(rf"(?:^\s*\[{{0,2}}|[{{,])[ \t]*+(?:{KEY}[ \t]*+\.[ \t]*+){{40}}", re.MULTILINE)
+DEEP = re.compile(rf"(?:^[ \t]*+\[{{0,2}}|[{{,])[ \t]*+(?:{KEY}[ \t]*+\.[ \t]*+){{40}}", re.MULTILINE)
 
 
 def toml(text: str) -> dict[str, Any]:

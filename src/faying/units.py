@@ -55,10 +55,11 @@ COMMON = {
     "1/K": {"1/K": 1.0},
 }
 
-NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*?)\s*", re.DOTALL)
+NUMBER = re.compile(r"\s*+([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*+((?:.*\S)?)\s*+", re.DOTALL)
 # a unit is names with whole powers, joined by * / . or a blank, maybe in brackets; "1/" may stand before one
-_NAME = r"[^\W\d_]+(?:_\w+)?(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"
-UNIT = re.compile(rf"(?:\s|[*/·.()]|1(?=\s*/)|{_NAME})*|%")
+_NAME = r"[^\W\d_]++(?:_\w+)?(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"  # ++: letters are not divided in every way
+UNIT = re.compile(rf"(?:\s|[*/·.()]|1(?=\s*/)|{_NAME})*+|%")
+LONGEST = 60  # letters of a unit's name
 
 
 @cache
@@ -79,8 +80,8 @@ def _factor(text: str, unit: str) -> float | None:
 def _pint_factor(text: str, unit: str) -> float | None:
     import pint
 
-    if UNIT.fullmatch(text) is None or len(text) > 60:
-        raise InputError(f"{text!r} is not the name of a unit")
+    if len(text) > LONGEST or UNIT.fullmatch(text) is None:
+        raise InputError(f"{text[:LONGEST]!r} is not the name of a unit")
     plain = (
         re.sub(r"(?<=[^\W\d_])\s*\.\s*(?=[^\W\d_])", "*", text).replace("·", "*").replace("²", "^2").replace("³", "^3")
     )

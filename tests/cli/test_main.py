@@ -192,6 +192,7 @@ def test_no_command_takes_a_path_that_no_file_can_have(command, name, said):
     [
         (["--z-unit", "um", "--D", "2.39"], "--z-unit: only with --scan"),
         (["--stability"], "--stability: only with --scan"),
+        (["--method", "box", "--D", "2.39"], "--method: only with --scan"),
         (["--scan", str(EXAMPLES / "t-specimen" / "milled.x3p"), "--stability", "--csv", "q.csv"], "leave out --csv"),
     ],
 )

@@ -165,7 +165,7 @@ def body(path):
     with tempfile.TemporaryDirectory(dir=Path(path).parent) as folder:
         session = Session(Project.at(Path(folder)))
         for method, route in ROUTES:
-            if (method, route) in (("POST", "job"), ("POST", "example"), ("POST", "new")):
+            if (method, route) in (("POST", "job"), ("POST", "example"), ("POST", "new")) or route in ("scan", "laws"):
                 continue
             answer = answered(session, method, route, Request(query=query, body=io.BytesIO(data), size=len(data)))
             size += len(answer)

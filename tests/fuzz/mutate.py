@@ -99,7 +99,22 @@ def swap_value(blob, rng):
     return blob[: match.start()] + BAD_VALUES[int(rng.integers(0, len(BAD_VALUES)))] + blob[match.end() :]
 
 
-KINDS = (truncate, flip, drop, double, drop_line, double_line, swap_number, swap_number, swap_value)
+def long_run(blob, rng):
+    """A stretch of one sign, which a careless search runs over again from each of its places."""
+    at, sign = int(rng.integers(0, len(blob) + 1)), rng.choice(list(" -1A,\t.(_\n$*e[#<"))
+    return blob[:at] + sign.encode() * int(rng.choice([50, 3000, 100_000])) + b"x" + blob[at:]
+
+
+def shuffle_lines(blob, rng):
+    """Some lines in another order."""
+    lines = blob.split(b"\n")
+    at = int(rng.integers(0, len(lines)))
+    some = lines[at : at + 20]
+    return b"\n".join([*lines[:at], *(some[k] for k in rng.permutation(len(some))), *lines[at + 20 :]])
+
+
+LINES = (drop_line, double_line, shuffle_lines)
+KINDS = (truncate, flip, drop, double, *LINES, swap_number, swap_number, swap_value, long_run)
 
 
 def mutated(blob, rng):

@@ -89,6 +89,13 @@ def test_nothing_is_overwritten_or_half_written(lap, tmp_path):
     assert (tmp_path / "s-surface.x3p").read_bytes()[:2] == b"PK"
 
 
+def test_a_file_that_is_no_scan_is_refused(lap, tmp_path):
+    (tmp_path / "other.toml").write_text('[geometry]\nstep = "a.step"\n')
+    with pytest.raises(faying.InputError, match="other.toml is a study, not a scan"):
+        call("new", lap, "--yes", "--out", tmp_path / "n.toml", "--scan", tmp_path / "other.toml")
+    assert not (tmp_path / "n.toml").exists()
+
+
 def test_without_a_terminal_it_asks_for_yes(lap, tmp_path):
     with pytest.raises(faying.InputError, match="no terminal to ask; give --yes"):
         call("new", lap, "--out", tmp_path / "s.toml")

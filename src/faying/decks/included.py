@@ -10,7 +10,7 @@ from faying.file_kinds import ABAQUS, NASTRAN, kind_of
 _ABAQUS = re.compile(
     rb"^[ \t]*\*(?!\*)(?:[^\n]*,[ \t\r]*\n)*[^\n]*?\binput\s*=\s*\"?((?<=\")[^\"\r\n]+|[^,\"\r\n]+)", re.I | re.M
 )
-_NASTRAN = re.compile(rb"^\s*INCLUDE[ \t]+['\"]?([^'\"\r\n$]+)", re.I | re.M)
+_NASTRAN = re.compile(rb"^[ \t]*+INCLUDE[ \t]+['\"]?([^'\"\r\n$]+)", re.I | re.M)
 
 
 def included(path: Path) -> tuple[Path, ...]:

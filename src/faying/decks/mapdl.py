@@ -120,7 +120,7 @@ class _Archive:
                 f"{self.path.name}, line {k + 1}: {line!r} gives the form of a block, but the line before is not a "
                 "command of one (NBLOCK, EBLOCK, CMBLOCK, ...); is it missing?"
             )
-        numbers = re.fullmatch(r"[-+]?[\d.]+(?:[eEdD][-+]?\d+)?(?:[\s-]+[-+]?[\d.eEdD+-]+)*", line) is not None
+        numbers = re.fullmatch(r"[-+]?[\d.][-+\d.eEdD\s]*", line) is not None
         if numbers and line != "-1" and self.last != k - 1:
             raise ReadError(
                 f"{self.path.name}, line {k + 1}: {line[:40]!r} is not in a block; does the block before it have more "

@@ -69,7 +69,7 @@ def read(path: Path) -> RawMesh:
             bulk.sets.setdefault(name, some)
     if not bulk.ended:
         text = read_text(path, "bulk data")
-        if re.search(r"^\s*BEGIN\s+BULK", text, re.I | re.M):
+        if re.search(r"^[ \t]*+BEGIN\s+BULK", text, re.I | re.M):
             raise ReadError(f"{path} ends without ENDDATA; the file is cut short")
         notes.append(f"{path.name} has no ENDDATA: it may be cut short")
     loaded = (fields[1] for fields, _ in bulk.loads if fields[6].upper() != "THRU" and fields[1].isdigit())
@@ -117,9 +117,9 @@ def _case_sets(path: Path) -> tuple[dict[str, list[tuple[int, int]]], list[str]]
     head = re.split(r"BEGIN\s+BULK", read_text(path, "bulk data"), maxsplit=1, flags=re.I)
     if len(head) < 2:
         return {}, []
-    used = re.finditer(r"^\s*([A-Z0-9]+)\s*(?:\([^)]*\))?\s*=\s*(\d+)\s*(?:\$.*)?$", head[0], re.I | re.M)
+    used = re.finditer(r"^[ \t]*+([A-Z0-9]+)\s*+(?:\([^)]*\))?\s*=\s*(\d+)\s*(?:\$.*)?$", head[0], re.I | re.M)
     by_elements = {f"SET{one[2]}": one[1].upper() for one in used if one[1].upper().startswith(OF_ELEMENTS)}
-    found = re.finditer(r"^\s*SET\s+(\d+)\s*=\s*((?:[^,\n]+,\s*)*[^,\n]+)$", head[0], re.I | re.M)
+    found = re.finditer(r"^[ \t]*+SET\s+(\d+)\s*=\s*((?:[^,\n]+,\s*+)*+[^,\n]+)$", head[0], re.I | re.M)
     sets = {}
     for one in found:
         words = re.sub(r",", " ", one.group(2)).split()

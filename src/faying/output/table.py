@@ -160,6 +160,8 @@ def waves_head(result: Result) -> str:
     if result.wave_rms is None or result.wave_lengths is None or result.wave_seeds is None:
         return ""
     drawn = np.isfinite(result.wave_rms)
+    if not drawn.any():
+        return ""
     rms, low, high = (
         _one_or_ends(1e6 * result.wave_rms[drawn], "um"),
         _one_or_ends(1e3 * result.wave_lengths[drawn, 0], "mm"),

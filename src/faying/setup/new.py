@@ -8,7 +8,7 @@ from typing import Any
 
 from faying.checks import number
 from faying.errors import InputError
-from faying.file_kinds import STEP, kind_of
+from faying.file_kinds import STEP, kind_held, kind_of
 from faying.files import together, write_atomically, write_text
 from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
@@ -164,6 +164,9 @@ def write(proposal: Proposal, step: Path, out: Path, answers: Answers, *, force:
         raise InputError(f'material "{unknown[0]}" is not in the catalogue; give one of {", ".join(CATALOGUE)}')
     if answers.scan is not None and not answers.scan.is_file():
         raise InputError(f"no scan {answers.scan}")
+    kind = None if answers.scan is None else kind_held(answers.scan)
+    if kind is not None and "scan" not in kind.serves:
+        raise InputError(f"{answers.scan} is {kind.says}, not a scan")
     synthetic = answers.scan is None and not proposal.alone
     made = [out.name, *[scan_name(out)] * synthetic]
     there = [out.parent / name for name in made if (out.parent / name).exists()]

@@ -129,9 +129,8 @@ def command(
     from faying.contact.build import find
 
     on_scan = options["scan"] is not None
-    alone = [f"--{name.replace('_', '-')}" for name in OF_SCAN if options[name] is not None] + [
-        "--stability"
-    ] * stability
+    alone = [f"--{name.replace('_', '-')}" for name in OF_SCAN if options[name] is not None]
+    alone += ["--stability"] * stability + ["--method"] * (options["method"] != "psd")
     if alone and not on_scan:
         raise InputError(f"{', '.join(alone)}: only with --scan FILE")
     other = {"--csv": csv_file, "--plot": plot, "--contact-map": contact_map, "--conductance": options["conductance"]}

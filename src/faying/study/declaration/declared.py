@@ -14,7 +14,7 @@ from faying.study.declaration.values import MAX_COUNT
 
 REQUIRED: Any = object()
 NAME = "NAME"  # stands for the names that a user gives
-NUMERAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+NUMERAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 QUANTITY = {"$ref": "#/$defs/quantity"}
 NUMBER = {"$ref": "#/$defs/number"}
 WORDS = {"type": "string"}

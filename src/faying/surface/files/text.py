@@ -16,7 +16,7 @@ from faying.typing import Array
 from faying.units import scale
 
 Steps = Callable[[int, int], tuple[float, float]]
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
+_NUMBER = re.compile(r"[+-]?(\d+(?:\.\d*)?|\.\d+)([eE][+-]?\d+)?$")
 _SIZE = re.compile(r"#\s*(?:Width|Breite|Height|Höhe):\s*(\S+)\s*(\S+)\s*$")
 _HEIGHTS = re.compile(r"#\s*Value units:\s*(\S+)\s*$")
 _MISSING = {"", "nan", "na", "n/a", "bad", "---", "***", "*"}
