@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from faying.bolt.threads import CLEARANCE_HOLES, HEADS, WASHERS, size_for_hole
+from faying.bolt.standards import COMMON, METRIC, metric, nearest_size, size_for_hole
 from faying.geometry.bores import Bore, Stack, bores, room_around, rows, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.seats import Countersink, countersink, lips
@@ -15,8 +15,9 @@ from faying.typing import Array
 from faying.units import show
 
 CHORDS = 1.02  # by so much a round edge is wider than its chords
-WIDEST = 1.1e-3 * CLEARANCE_HOLES[max(CLEARANCE_HOLES)][2]  # m: wider holes are for no bolt that is known here
+WIDEST = 1.1e-3 * METRIC[max(COMMON)].holes[2]  # m: wider holes are for no bolt that is known here
 SUNK = 1.6  # nominal diameters from which a cone at the mouth of a hole is a countersink, and no chamfer
+DRAWN = 0.02  # of its diameter: how far a shank is from the size that it is drawn as
 PLACES = 3  # rows of holes whose places a remark says
 
 
@@ -41,7 +42,7 @@ class FoundBolt:
     head: tuple[FaceFacts, ...]
     end: tuple[FaceFacts, ...]
     words: tuple[str, str] = ("seat", "seat")
-    size: int | None = None
+    size: float | None = None
     at: tuple[float, float, float] | None = None
     ring: tuple[float, float] | None = None
     part: str | None = None
@@ -100,8 +101,7 @@ def found_bolts(
 
 def _meshed(facts: GeometryFacts, bolt: MeshedBolt) -> FoundBolt:
     assert bolt.shank.radius is not None
-    wide = 2e3 * bolt.shank.radius
-    size = round(wide) if abs(wide - round(wide)) < 0.05 and round(wide) in WASHERS else None
+    size = nearest_size(2e3 * bolt.shank.radius, lambda one: one.size, DRAWN)
     clamped = {part for contact in facts.contacts if bolt.part in contact.parts for part in contact.parts}
     return FoundBolt(
         axis=np.array(bolt.shank.axis),
@@ -128,7 +128,7 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
     if sizes or size is None:
         return None
     hole = 2 * max(bore.radius for bore in stack.bores)
-    outer = WASHERS[size] / 1e3
+    outer = _washer(size)
     ends = {True: stack.bores[-1], False: stack.bores[0]}
     for top, bore in ends.items():
         found = lips(facts, bore, top=top, shank=size / 1e3, ring=(hole, outer))
@@ -148,7 +148,7 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
             at=to_nanometres(stack.middle),
             ring=(round(hole, 9), outer),
             remark=(
-                f"M{size} for a hole of {show(hole, 'm')} (ISO 273), in a T-slot of {owner!r}; "
+                f"M{size:g} for a hole of {show(hole, 'm')} (ISO 273), in a T-slot of {owner!r}; "
                 f"seats: from the hole to the diameter {why}, on the lips as far as they reach"
             ),
         )
@@ -188,9 +188,20 @@ def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> FoundBolt | Non
     return _through(facts, stack, (ends[0], ends[1]), size)
 
 
-def _outer(size: int, room: float) -> tuple[float, str]:
+def _washer(size: float) -> float:
+    """Outer diameter [m] of the plain washer of a size [mm] (ISO 7089)."""
+    washer = metric(size).washer
+    return 1e-3 * (size if washer is None else washer[1])
+
+
+def _socket(size: float) -> float:
+    """Diameter [m] of the head of the cap screw of a size [mm] (ISO 4762)."""
+    return 1e-3 * (metric(size).socket or size)
+
+
+def _outer(size: float, room: float) -> tuple[float, str]:
     """Outer diameter [m] of the seat of a bolt of a size [mm] in a room [m] around its axis, and where it is from."""
-    washer, head = WASHERS[size] / 1e3, HEADS[size] / 1e3
+    washer, head = _washer(size), _socket(size)
     outer, why = (washer, "of its washer, ISO 7089") if washer <= room else (head, "of its head, ISO 4762")
     if outer > room:
         why += f", although the face ends {show(room / 2, 'm')} from the axis"
@@ -202,7 +213,7 @@ def _screw(
     stack: Stack,
     head: tuple[Bore, tuple[FaceFacts, ...]],
     tapped: Bore,
-    size: int,
+    size: float,
     sunk: float | None,
 ) -> FoundBolt:
     """A screw into a tapped hole; head: the hole under its head, and the faces that it presses; sunk: as of `_sunk`."""
@@ -215,15 +226,15 @@ def _screw(
         end=tuple(facts.face(tapped.part, number) for number in tapped.faces),
         words=("seat" if sunk is None else "countersink", "thread"),
         size=size,
-        ring=(round(2 * bore.radius, 9), HEADS[size] / 1e3 if sunk is None else round(sunk, 9)),
+        ring=(round(2 * bore.radius, 9), _socket(size) if sunk is None else round(sunk, 9)),
         remark=(
-            f"M{size} for {_hole(bore)} (ISO 273), screwed into the hole of "
+            f"M{size:g} for {_hole(bore)} (ISO 273), screwed into the hole of "
             f"{show(2 * tapped.radius, 'm')} in {tapped.part!r}; {why}"
         ),
     )
 
 
-def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: int, outer: float) -> FoundBolt:
+def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: float, outer: float) -> FoundBolt:
     """A countersunk screw with a nut; outer: diameter [m] at the wide end of the cone."""
     hole = 2 * min(bore.radius for bore in stack.bores)
     return FoundBolt(
@@ -235,11 +246,11 @@ def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: int, 
         size=size,
         at=to_nanometres(stack.middle),
         ring=(round(hole, 9), round(outer, 9)),
-        remark=f"M{size} for a hole of {show(hole, 'm')} (ISO 273); countersunk head, and a nut on a ring as wide",
+        remark=f"M{size:g} for a hole of {show(hole, 'm')} (ISO 273); countersunk head, and a nut on a ring as wide",
     )
 
 
-def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFacts], size: int) -> FoundBolt:
+def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFacts], size: float) -> FoundBolt:
     last = (stack.bores[0], stack.bores[-1])
     widest = max(last, key=lambda bore: (bore.slot is not None, bore.radius))
     room = 2 * CHORDS * min(room_around(facts, end, bore) for end, bore in zip(ends, last, strict=True))
@@ -253,7 +264,7 @@ def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFact
         size=size,
         at=to_nanometres(stack.middle),
         ring=(round(2 * widest.radius, 9), outer),
-        remark=f"M{size} for {_hole(widest)} (ISO 273); seat: from the hole to the diameter {why}{pin}",
+        remark=f"M{size:g} for {_hole(widest)} (ISO 273); seat: from the hole to the diameter {why}{pin}",
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from faying.bolt.threads import PINS, is_tapped, size_for_hole
+from faying.bolt.standards import COMMON_PINS, is_tapped, size_for_hole
 from faying.geometry.bores import Bore, Stack, bores, rows, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
 from faying.setup.face_names import FaceNames
@@ -71,10 +71,10 @@ def like_dowel(stack: Stack) -> bool:
     """Whether round holes have one diameter, which is that of a pin (ISO 2338)."""
     wide = [2e3 * bore.radius for bore in stack.bores]
     one = max(wide) - min(wide) <= ALIKE * wide[0] and all(bore.slot is None for bore in stack.bores)
-    return one and any(abs(wide[0] - pin) <= ALIKE * pin for pin in PINS)
+    return one and any(abs(wide[0] - pin) <= ALIKE * pin for pin in COMMON_PINS)
 
 
-def size_of(stack: Stack) -> tuple[int, Bore | None] | None:
+def size_of(stack: Stack) -> tuple[float, Bore | None] | None:
     """Nominal diameter [mm] of the bolt of a row of holes, and the hole that is its thread; None where none fits."""
     sizes = [size_for_hole(2 * bore.radius) for bore in stack.bores]
     ends = [(stack.bores[-1], sizes[:-1]), (stack.bores[0], sizes[1:])]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.bolt.threads import WASHERS
+from faying.bolt.standards import nearest_size
 from faying.decks.meshfile import read_mesh, read_pretensions
 from faying.decks.raw import Pretension
 from faying.fe.mesh import Mesh
@@ -120,7 +120,7 @@ def _bolt(
         part=part,
         force=force,
         remark=f"{section.text}{pulled}: the part {part!r} is the bolt"
-        + (f", M{size} by the area of its section" if size else ""),
+        + (f", M{size:g} by the area of its section" if size else ""),
     )
 
 
@@ -132,11 +132,11 @@ def _axis(places: Array, section: Pretension) -> Array:
     return np.asarray(np.linalg.svd(places - places.mean(axis=0))[2][2])
 
 
-def _size(places: Array, axis: Array) -> int | None:
+def _size(places: Array, axis: Array) -> float | None:
     """Nominal diameter [mm] of a round section; None where it is none of a common bolt."""
     from scipy.spatial import ConvexHull
 
     flat = np.linalg.svd(np.eye(3) - np.outer(axis, axis))[0][:, :2]
     area = ConvexHull((places - places.mean(axis=0)) @ flat).volume  # of a plane figure it is the area
     wide = 1e3 * sqrt(4 * area / pi)
-    return next((size for size in WASHERS if abs(wide - size) <= ROUND * size), None)
+    return nearest_size(wide, lambda one: one.size, ROUND)

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
+from faying.bolt.vdi2230 import TIGHTENED
 from faying.checks import number
 from faying.errors import InputError
 from faying.file_kinds import STEP, kind_of
@@ -18,7 +20,7 @@ from faying.setup.edit import written as quoted
 from faying.setup.faces import faces
 from faying.setup.found_dowels import DowelProposal
 from faying.setup.mesh_proposal import propose_mesh
-from faying.setup.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
+from faying.setup.proposal import GRADE, BoltProposal, Proposal, propose
 from faying.setup.template import SCHEMA, surface
 from faying.style import Summary
 from faying.text import cut
@@ -33,7 +35,7 @@ class Answers:
 
     Args:
         materials: part -> material of the catalogue; steel where a part is left out.
-        preload: force of every bolt [N]; 70 % of the proof load of class 8.8 where None.
+        preload: force of every bolt [N]; that of class 8.8 which its bolt sheet accepts where None.
         scan: scan of one face; a synthetic milled surface where None.
     """
 
@@ -82,7 +84,7 @@ class Written(Summary):
                 {
                     "name": b.name,
                     "faces": list(b.faces),
-                    "size": b.size and f"M{b.size}",
+                    "size": b.size and f"M{b.size:g}",
                     "part": b.part,
                     "preload": {"unit": "N", "values": b.preload},
                 }
@@ -113,7 +115,7 @@ def new_study(
         study: The file to write.
         scan: Scan of one face; a synthetic milled one is written where None.
         materials: Material of all parts, or part -> material, of the catalogue; steel where a part is left out.
-        preload: Force of each bolt [N], or text such as "12 kN"; 70 % of the proof load of class 8.8 where None.
+        preload: Force of each bolt [N], or text such as "12 kN"; what the bolt sheet accepts of class 8.8 where None.
         unit: Unit of a mesh file's coordinates, such as "mm".
         force: Whether files that exist are replaced.
 
@@ -218,7 +220,7 @@ NO_BOLT = """# No bolt was found in the geometry. Name the two faces that head a
 # seat = ["9 mm", "16 mm"]       # inner and outer diameter of what head and nut press on
 # diameter = "8 mm"
 # material = "S355"
-# preload = "14.9 kN"
+# preload = "14.5 kN"
 """
 SUPPORT = """# Assumed: the structure is free. A face that is held:
 # [[support]]
@@ -333,7 +335,7 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
     if bolt.part is not None:
         lines.append(f"part = {quoted(bolt.part)}")
         lines += [f"at = {_millimetres(bolt.at)}"] if bolt.at is not None else []
-        lines += [f'thread = "M{bolt.size}"', f'grade = "{GRADE}"  # ASSUMED'] if bolt.size else []
+        lines += [f'thread = "M{bolt.size:g}"', f'grade = "{GRADE}"  # ASSUMED'] if bolt.size else []
     else:
         assert bolt.ring is not None
         inner, outer = (show(d, "m") for d in bolt.ring)
@@ -341,7 +343,7 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
             lines.append(f"at = {_millimetres(bolt.at)}")
         lines += [
             f'seat = ["{inner}", "{outer}"]',
-            f'diameter = "{bolt.size} mm"',
+            f'diameter = "{bolt.size:g} mm"',
             f"material = {quoted(STEEL)}",
             f'grade = "{GRADE}"  # ASSUMED',
         ]
@@ -365,7 +367,8 @@ def _dowel(dowel: DowelProposal) -> str:
 
 
 def _share() -> str:
-    return f"{SHARE:.0%} of the proof load of class {GRADE}, ISO 898-1"
+    scatter = TIGHTENING[DEFAULT_WAY].scatter
+    return f"class {GRADE}: stress at assembly {TIGHTENED:.0%} of yield at {1 + scatter:.2f} times it (VDI 2230, R7)"
 
 
 def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[str]:

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.bolt.threads import Fastener, Thread
+from faying.bolt.threads import MAX_DIAMETER, Fastener, Thread
+from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
+from faying.bolt.vdi2230 import greatest_preload
 from faying.errors import InputError
 from faying.geometry.face_facts import GeometryFacts, PartFacts, TouchingFaces, part_distance
 from faying.geometry.selectors import TOUCHING, Selector
@@ -19,7 +21,7 @@ from faying.setup.found_bolts import FoundBolt, LeftOut, clamped_along, found_bo
 from faying.setup.found_dowels import DowelProposal, found_dowels
 from faying.units import show
 
-GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that they are tightened to
+GRADE = "8.8"  # of the bolts
 ROOM = 0.7  # of the free memory that a proposed run takes, whose unknowns are an estimate
 ACROSS = 2  # elements across the thinnest part
 MAX_UNKNOWNS = 300_000  # unknowns beyond which the mesh is proposed coarser
@@ -53,7 +55,7 @@ class BoltProposal:
 
     name: str
     faces: tuple[str, str]
-    size: int | None = None
+    size: float | None = None
     at: tuple[float, float, float] | None = None
     ring: tuple[float, float] | None = None
     part: str | None = None
@@ -62,11 +64,11 @@ class BoltProposal:
 
     @property
     def preload(self) -> float | None:
-        """70 % of the proof load of class 8.8 [N], three digits; None where the size is not known."""
-        if self.size is None:
+        """The greatest [N] that the bolt sheet accepts of class 8.8, three digits; None where no class is known."""
+        if self.size is None or self.size * 1e-3 > MAX_DIAMETER:
             return None
-        force = SHARE * Fastener(thread=Thread.coarse(self.size * 1e-3), grade=GRADE).proof_load
-        return rounded(force, 3)
+        fastener = Fastener(thread=Thread.coarse(self.size * 1e-3), grade=GRADE)
+        return rounded(greatest_preload(fastener, scatter=TIGHTENING[DEFAULT_WAY].scatter), 3, up=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,10 +200,11 @@ def snapped(facts: GeometryFacts, contacts: Sequence[TouchingFaces]) -> tuple[fl
     return rounded(1.01 * widest, 2, up=True), [words]
 
 
-def rounded(value: float, digits: int, *, up: bool = False) -> float:
-    """A value to so many digits, the nearest or the next above."""
+def rounded(value: float, digits: int, *, up: bool | None = None) -> float:
+    """A value to so many digits: the nearest, or the next above or below."""
     step: float = 10.0 ** (floor(log10(value)) - digits + 1)
-    return round((np.ceil(value / step) if up else round(value / step)) * step, 15)
+    count = round(value / step) if up is None else np.ceil(value / step) if up else np.floor(value / step)
+    return round(float(count) * step, 15)
 
 
 def touching(facts: GeometryFacts) -> list[TouchingFaces]:
