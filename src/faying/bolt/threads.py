@@ -137,6 +137,11 @@ class Thread:
         return pi / 4 * ((self.pitch_diameter + self.minor_diameter) / 2) ** 2
 
 
+def is_graded(thread: Thread) -> bool:
+    """Whether ISO 898-1 has strengths for a thread."""
+    return MIN_DIAMETER <= thread.diameter <= MAX_DIAMETER
+
+
 @dataclass(frozen=True, kw_only=True)
 class Fastener:
     """Thread and property class of a steel bolt, such as M8 of class 8.8.
@@ -160,7 +165,7 @@ class Fastener:
             raise InputError(
                 f'grade "{self.grade}" is not a property class of ISO 898-1; give one of {", ".join(PROOF)}'
             )
-        if not MIN_DIAMETER <= self.thread.diameter <= MAX_DIAMETER:
+        if not is_graded(self.thread):
             raise InputError(
                 f"thread {self.thread}: the property classes of ISO 898-1 cover M1.6 to M39; leave out grade"
             )

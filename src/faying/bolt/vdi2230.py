@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import atanh, log, pi, sqrt
 
-from faying.bolt.threads import Fastener
+from faying.bolt.threads import Thread
 from faying.errors import InputError
 
 # guide values of embedding [m] under axial load, from a roughness height Rz [m]: in the thread, under head or nut each,
@@ -160,18 +160,20 @@ def reduced_stress(F: float, d_0: float, torque: float) -> float:
     return sqrt((F / (pi / 4 * d_0**2)) ** 2 + 3 * (torque / (pi / 12 * d_0**3)) ** 2)
 
 
-def greatest_preload(fastener: Fastener, *, scatter: float, friction: float = DEFAULT_FRICTION) -> float:
+def greatest_preload(
+    thread: Thread, yield_stress: float, *, scatter: float, friction: float = DEFAULT_FRICTION
+) -> float:
     """Return the preload [N] at which the stress at assembly is 90 % of the yield stress where it scatters upwards.
 
     Args:
-        fastener: Thread and property class.
+        thread: The thread.
+        yield_stress: Of the bolt [Pa].
         scatter: Of the preload [-]: the greatest is (1 + scatter) times it.
         friction: Coefficient in the thread [-].
 
     Source:
         VDI 2230 Part 1:2015, R7.
     """
-    thread = fastener.thread
     torque = thread_torque(1.0, thread.pitch, thread.pitch_diameter, friction)
     stress = reduced_stress(1.0, (thread.pitch_diameter + thread.minor_diameter) / 2, torque)  # of 1 N
-    return TIGHTENED * fastener.yield_stress / stress / (1 + scatter)
+    return TIGHTENED * yield_stress / stress / (1 + scatter)

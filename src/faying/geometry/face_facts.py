@@ -193,7 +193,13 @@ class GeometryFacts(Summary):
 
     def triangles(self, face: FaceFacts) -> Array:
         """Triangles (t, 3, 3) [m] of a face."""
-        return np.asarray(self.corners[self.face_of == self.faces.index(face)])
+        return self._triangles[face.part, face.number]
+
+    @cached_property
+    def _triangles(self) -> dict[tuple[str, int], Array]:
+        order = np.argsort(self.face_of, kind="stable")
+        rows = np.split(order, np.cumsum(np.bincount(self.face_of, minlength=len(self.faces)))[:-1])
+        return {(face.part, face.number): self.corners[row] for face, row in zip(self.faces, rows, strict=True)}
 
     def without(self, parts: Container[str]) -> "GeometryFacts":
         """The same geometry with some parts left out."""

@@ -8,6 +8,8 @@ from math import pi
 import numpy as np
 
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, TouchingFaces
+from faying.setup.drawn_bolts import DrawnBolt, drawn_bolts
+from faying.setup.fastener_forms import forms
 from faying.text import listed
 from faying.typing import Array
 
@@ -17,6 +19,7 @@ SOLID = 0.75  # of the volume of a cylinder, below which a pin is hollow
 TIGHT = 1e-2  # of the radius: gap between shank and hole below which they fit without play
 
 Side = tuple[str, int]
+Pair = tuple[FaceFacts, FaceFacts, float]  # a shaft, the hole round it, and the gap [m]
 Point = tuple[float, float, float]
 
 
@@ -51,20 +54,29 @@ class Fasteners:
 
     Args:
         meshed: bolts that can be meshed.
+        drawn: bolts that are left out with their nuts and washers: beams as they are drawn stand for them.
         dowels: parts that are dowels, which are left out, too: pins without a mesh stand for them.
-        others: parts that are left out: bolts, studs and nuts that beams stand for.
+        others: parts that are left out: bolts, studs and nuts whose holes or seats are not found.
+        washers: washers that are not left out.
         shanks: part and number of the faces of holes in which a meshed bolt or a dowel runs.
     """
 
     meshed: tuple[MeshedBolt, ...] = ()
+    drawn: tuple[DrawnBolt, ...] = ()
     dowels: tuple[DrawnPin, ...] = ()
     others: tuple[str, ...] = ()
+    washers: tuple[str, ...] = ()
     shanks: frozenset[Side] = field(default_factory=frozenset)
 
     @property
     def left_out(self) -> tuple[str, ...]:
         """Parts that the mesh leaves out."""
-        return (*(pin.part for pin in self.dowels), *self.others)
+        return (*(pin.part for pin in self.dowels), *self.of_bolts, *self.others)
+
+    @property
+    def of_bolts(self) -> tuple[str, ...]:
+        """Parts that are bolts with their nuts and washers: the stems of all, then the rest."""
+        return (*(bolt.part for bolt in self.drawn), *(ring for bolt in self.drawn for ring in bolt.rings))
 
     @property
     def remarks(self) -> list[str]:
@@ -75,10 +87,15 @@ class Fasteners:
                 f"{quoted(pin.part for pin in self.dowels)}: dowels, which carry only shear. Left out of the mesh "
                 "(geometry.leave_out); a [[dowel]] stands for each"
             )
+        if self.drawn:
+            out.append(
+                f"{quoted(self.of_bolts)}: bolts, their nuts and washers. Left out of the mesh (geometry.leave_out): a "
+                "beam stands for each bolt, and what is not its shank rests as mass on its two seats"
+            )
         if self.others:
             out.append(
-                f"{quoted(self.others)}: bolts, studs or nuts without one flat face under the head and one at the nut. "
-                "Left out of the mesh (geometry.leave_out); beams stand for those whose holes are found"
+                f"{quoted(self.others)}: bolts, studs or nuts whose holes, seats or size are not found. Left out of "
+                "the mesh (geometry.leave_out), and no beam stands for them but where holes by themselves ask for one"
             )
         return out
 
@@ -101,34 +118,50 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
         for one, two in permutations(contact.sides)
         if facts.face(*one).kind == "cylinder" and not facts.face(*one).hole
     ]
-    meshed, dowels, others = [], [], []
-    shafts: list[FaceFacts] = []
+    shafts = {part.name: mine for part in facts.parts if (mine := _shaft(facts, part.name, pairs))}
+    meshed = [bolt for mine in shafts.values() if (bolt := _meshed(facts, joints, mine[0][0])) is not None]
+    solid = {bolt.part for bolt in meshed}
+    found = [form for form in forms(facts) if form.part not in solid]
+    drawn = drawn_bolts(facts, found, solid)
+    taken = solid | {one for bolt in drawn for one in (bolt.part, *bolt.rings)}
+    dowels, others = [], []
     for part in facts.parts:
-        mine = [pair for pair in pairs if pair[0].part == part.name]
-        if not mine or _reach(facts, part.name, mine[0][0])[0] > 2 * SLENDER * (mine[0][0].radius or 0.0):
+        mine = shafts.get(part.name, [])
+        if not mine or part.name in taken:
             continue
-        shank = mine[0][0]
-        low, high = _pressed(facts, joints, shank)
-        if len(low) == len(high) == 1:
-            head = max((low[0], high[0]), key=lambda face: face.area)
-            nut = high[0] if head is low[0] else low[0]
-            meshed.append(MeshedBolt(part=part.name, shank=shank, head=head, nut=nut))
-            continue
-        tight = {hole.part for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0)}
-        if not low and not high and len(tight) > 1 and not any(_is_nut(facts, *pair) for pair in mine):
-            holes = tuple(hole for _, hole, gap in mine if gap <= TIGHT * (shank.radius or 0.0))
-            dowels.append(_pin(facts, part, shank, holes))
+        close = TIGHT * (mine[0][0].radius or 0.0)
+        holes = tuple(hole for _, hole, gap in mine if gap <= close)
+        pressed = any(_pressed(facts, joints, mine[0][0]))
+        if not pressed and len({hole.part for hole in holes}) > 1 and not any(_is_nut(facts, *pair) for pair in mine):
+            dowels.append(_pin(facts, part, mine[0][0], holes))
         else:
-            others.append(part.name)
-            shafts.append(shank)
-    nuts = [pair[1].part for pair in pairs if pair[0] in shafts and _is_nut(facts, *pair)]
-    owners = {*(bolt.part for bolt in meshed), *(pin.part for pin in dowels)}
+            others += [part.name, *(hole.part for shank, hole, gap in mine if _is_nut(facts, shank, hole, gap))]
+    owners = {*solid, *(pin.part for pin in dowels)}
     return Fasteners(
         meshed=tuple(meshed),
+        drawn=tuple(drawn),
         dowels=tuple(dowels),
-        others=tuple(dict.fromkeys((*others, *nuts))),
+        others=tuple(one for one in dict.fromkeys(others) if one not in taken),
+        washers=tuple(form.part for form in found if form.is_washer and form.part not in taken),
         shanks=frozenset((hole.part, hole.number) for shank, hole, _ in pairs if shank.part in owners),
     )
+
+
+def _shaft(facts: GeometryFacts, part: str, pairs: Sequence[Pair]) -> list[Pair]:
+    """A shaft of a part that is slender enough for a fastener, with the holes that it runs in; none for other parts."""
+    mine = [pair for pair in pairs if pair[0].part == part]
+    if not mine or _reach(facts, part, mine[0][0])[0] > 2 * SLENDER * (mine[0][0].radius or 0.0):
+        return []
+    return mine
+
+
+def _meshed(facts: GeometryFacts, joints: Sequence[TouchingFaces], shank: FaceFacts) -> MeshedBolt | None:
+    """The bolt that a part is with its nut: one flat face presses at each end of its shank."""
+    low, high = _pressed(facts, joints, shank)
+    if len(low) != 1 or len(high) != 1:
+        return None
+    head = max((low[0], high[0]), key=lambda face: face.area)
+    return MeshedBolt(part=shank.part, shank=shank, head=head, nut=high[0] if head is low[0] else low[0])
 
 
 def _pressed(
@@ -168,8 +201,7 @@ def _reach(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[float, fl
 
 def _corners(facts: GeometryFacts, part: str) -> Array:
     """Corners of the triangles of a part [m]."""
-    numbers = [k for k, face in enumerate(facts.faces) if face.part == part]
-    return np.asarray(facts.corners[np.isin(facts.face_of, numbers)])
+    return np.concatenate([facts.triangles(face) for face in facts.by_part[part]])
 
 
 def _about(points: Array, shank: FaceFacts) -> tuple[Array, Array]:

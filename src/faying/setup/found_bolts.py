@@ -1,23 +1,26 @@
 """Bolts that the holes of a geometry ask for: through bolts, screws, countersunk screws, bolts in T-slots."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from faying.bolt.standards import COMMON, METRIC, metric, nearest_size, size_for_hole
-from faying.geometry.bores import Bore, Stack, bores, room_around, rows, seat
+from faying.bolt.compliance import Head
+from faying.bolt.standards import COMMON, METRIC, is_tapped, metric, nearest_size, size_for_hole
+from faying.bolt.tapped import ENGAGED
+from faying.geometry.bores import Bore, Stack, room_around, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.seats import Countersink, countersink, lips
+from faying.setup.drawn_bolts import DrawnBolt
+from faying.setup.fastener_forms import DRAWN
 from faying.setup.fasteners import Fasteners, MeshedBolt, quoted, to_nanometres
-from faying.setup.found_dowels import like_dowel, size_of, takes_dowel
+from faying.setup.found_dowels import free_rows, like_dowel, size_of, takes_dowel
 from faying.typing import Array
 from faying.units import show
 
 CHORDS = 1.02  # by so much a round edge is wider than its chords
 WIDEST = 1.1e-3 * METRIC[max(COMMON)].holes[2]  # m: wider holes are for no bolt that is known here
 SUNK = 1.6  # nominal diameters from which a cone at the mouth of a hole is a countersink, and no chamfer
-DRAWN = 0.02  # of its diameter: how far a shank is from the size that it is drawn as
 PLACES = 3  # rows of holes whose places a remark says
 
 
@@ -34,6 +37,9 @@ class FoundBolt:
         at: point on the axis [m]; None where a tapped hole or a meshed bolt says it.
         ring: inner and outer diameter of the seat [m]; None for a meshed bolt.
         part: the part that it is, if it is one.
+        shape: of the head.
+        engaged: length in the thread [m]; None where the depth of its hole says it.
+        drawn: the bodies of the file that it stands for, if it does.
         remark: where size and ring come from.
     """
 
@@ -46,6 +52,9 @@ class FoundBolt:
     at: tuple[float, float, float] | None = None
     ring: tuple[float, float] | None = None
     part: str | None = None
+    shape: Head = "hexagon"
+    engaged: float | None = None
+    drawn: DrawnBolt | None = None
     remark: str = ""
 
 
@@ -73,7 +82,7 @@ class LeftOut:
 def found_bolts(
     facts: GeometryFacts, fasteners: Fasteners, joints: Sequence[TouchingFaces], out: LeftOut
 ) -> list[FoundBolt]:
-    """The bolts of a geometry: parts that are bolts, and rows of holes that take one.
+    """The bolts of a geometry: parts that are bolts, bolts that are drawn, and rows of holes that take one.
 
     Args:
         facts: of the parts that are not left out.
@@ -81,22 +90,57 @@ def found_bolts(
         joints: the planes that touch.
         out: takes the rows of holes that have no bolt.
     """
-    found = [_meshed(facts, bolt) for bolt in fasteners.meshed]
-    solid = {bolt.part for bolt in fasteners.meshed}
-    holes = [bore for bore in bores(facts) if bore.part not in solid]
+    found = [*(_meshed(facts, bolt) for bolt in fasteners.meshed), *map(_drawn, fasteners.drawn)]
     met = {side for contact in joints for side in contact.sides}
-    for stack in rows(holes, reach=0.01 * facts.size):
-        taken = any((bore.part, number) in fasteners.shanks for bore in stack.bores for number in bore.faces)
-        if taken or 2 * min(bore.radius for bore in stack.bores) > WIDEST:
-            continue  # a meshed bolt or a dowel is there, or it is a pipe, a bearing
-        if takes_dowel(facts, stack):
-            continue
+    for stack in (one for row in free_rows(facts, fasteners) for one in _from_both_sides(row)):
+        if 2 * min(bore.radius for bore in stack.bores) > WIDEST or takes_dowel(facts, stack):
+            continue  # a pipe, a bearing, or a dowel
         bolt = _in_slot(facts, stack) or (_in_row(facts, stack, out) if len(stack.bores) > 1 else None)
         if bolt is not None:
             found.append(bolt)
         elif len(stack.bores) == 1 and _opens(facts, stack.bores[0], met):
             out.add(stack, "end at a joint, where no hole and no slot of another part takes a bolt: left out")
-    return found
+    return [_in_shared_thread(bolt, found) for bolt in found]
+
+
+def _in_shared_thread(bolt: FoundBolt, found: Sequence[FoundBolt]) -> FoundBolt:
+    """A screw that meets another one in the middle of a thread engages half of it at most."""
+    shared = [one for one in found if one is not bolt and one.end == bolt.end and bolt.words[1] == "thread"]
+    depth = max((face.length or 0.0 for face in bolt.end), default=0.0)
+    if not shared or bolt.size is None or bolt.engaged is not None:
+        return bolt
+    half = round(min(ENGAGED * 1e-3 * bolt.size, depth / 2), 9)
+    return replace(bolt, engaged=half, remark=f"{bolt.remark}; another screw comes from the other side")
+
+
+def _drawn(bolt: DrawnBolt) -> FoundBolt:
+    """A bolt as it is drawn."""
+    return FoundBolt(
+        axis=bolt.axis,
+        parts=bolt.parts,
+        head=bolt.head,
+        end=bolt.end,
+        words=bolt.words,
+        size=bolt.size,
+        at=None if bolt.tapped else to_nanometres(bolt.point),
+        ring=bolt.ring,
+        shape=bolt.shape,
+        engaged=bolt.engaged,
+        drawn=bolt,
+        remark=bolt.remark,
+    )
+
+
+def _from_both_sides(stack: Stack) -> list[Stack]:
+    """A row in two where two screws meet in the thread of a part in its middle, one from either side."""
+    sizes = [size_for_hole(2 * bore.radius) for bore in stack.bores]
+    for k in range(1, len(sizes) - 1):
+        before, behind = set(sizes[:k]), set(sizes[k + 1 :])
+        if len(before) == len(behind) == 1 and before == behind and None not in before:
+            size = before.pop()
+            if size is not None and sizes[k] != size and is_tapped(2 * stack.bores[k].radius, size):
+                return [Stack(bores=stack.bores[: k + 1]), Stack(bores=stack.bores[k:])]
+    return [stack]
 
 
 def _meshed(facts: GeometryFacts, bolt: MeshedBolt) -> FoundBolt:
@@ -129,7 +173,7 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
         return None
     hole = 2 * max(bore.radius for bore in stack.bores)
     outer = _washer(size)
-    ends = {True: stack.bores[-1], False: stack.bores[0]}
+    ends = {True: stack.ends[1], False: stack.ends[0]}
     for top, bore in ends.items():
         found = lips(facts, bore, top=top, shank=size / 1e3, ring=(hole, outer))
         under = seat(facts, ends[not top], top=not top) if found else None
@@ -147,6 +191,7 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
             size=size,
             at=to_nanometres(stack.middle),
             ring=(round(hole, 9), outer),
+            shape=_shape(size, outer),
             remark=(
                 f"M{size:g} for a hole of {show(hole, 'm')} (ISO 273), in a T-slot of {owner!r}; "
                 f"seats: from the hole to the diameter {why}, on the lips as far as they reach"
@@ -158,7 +203,7 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
 def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> FoundBolt | None:
     """The bolt of a row of holes through several parts; None, noted in `out`, where none fits."""
     found = size_of(stack)
-    low, high = stack.bores[0], stack.bores[-1]
+    low, high = stack.ends
     ends = seat(facts, low, top=False), seat(facts, high, top=True)
     if found is None:
         out.add(stack, "are clearance holes of no common bolt (M3 to M24, ISO 273): left out")
@@ -199,6 +244,11 @@ def _socket(size: float) -> float:
     return 1e-3 * (metric(size).socket or size)
 
 
+def _shape(size: float, outer: float) -> Head:
+    """The head of a bolt whose seat has an outer diameter [m] of `_outer`."""
+    return "hexagon" if outer == _washer(size) else "socket"
+
+
 def _outer(size: float, room: float) -> tuple[float, str]:
     """Outer diameter [m] of the seat of a bolt of a size [mm] in a room [m] around its axis, and where it is from."""
     washer, head = _washer(size), _socket(size)
@@ -227,6 +277,7 @@ def _screw(
         words=("seat" if sunk is None else "countersink", "thread"),
         size=size,
         ring=(round(2 * bore.radius, 9), _socket(size) if sunk is None else round(sunk, 9)),
+        shape="hexagon" if sunk is not None else "socket",
         remark=(
             f"M{size:g} for {_hole(bore)} (ISO 273), screwed into the hole of "
             f"{show(2 * tapped.radius, 'm')} in {tapped.part!r}; {why}"
@@ -251,7 +302,7 @@ def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: float
 
 
 def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFacts], size: float) -> FoundBolt:
-    last = (stack.bores[0], stack.bores[-1])
+    last = stack.ends
     widest = max(last, key=lambda bore: (bore.slot is not None, bore.radius))
     room = 2 * CHORDS * min(room_around(facts, end, bore) for end, bore in zip(ends, last, strict=True))
     outer, why = _outer(size, room)
@@ -264,6 +315,7 @@ def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFact
         size=size,
         at=to_nanometres(stack.middle),
         ring=(round(2 * widest.radius, 9), outer),
+        shape=_shape(size, outer),
         remark=f"M{size:g} for {_hole(widest)} (ISO 273); seat: from the hole to the diameter {why}{pin}",
     )
 

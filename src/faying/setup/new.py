@@ -86,6 +86,10 @@ class Written(Summary):
                     "faces": list(b.faces),
                     "size": b.size and f"M{b.size:g}",
                     "part": b.part,
+                    "head": b.shape,
+                    "engaged": {"unit": "m", "values": b.engaged},
+                    "washers": 0 if b.drawn is None else len(b.drawn.washers),
+                    "drawn": None if b.drawn is None else [b.drawn.part, *b.drawn.rings],
                     "preload": {"unit": "N", "values": b.preload},
                 }
                 for b in found.bolts
@@ -335,7 +339,7 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
     if bolt.part is not None:
         lines.append(f"part = {quoted(bolt.part)}")
         lines += [f"at = {_millimetres(bolt.at)}"] if bolt.at is not None else []
-        lines += [f'thread = "M{bolt.size:g}"', f'grade = "{GRADE}"  # ASSUMED'] if bolt.size else []
+        lines += [f'thread = "M{bolt.size:g}"', *_grade(bolt)] if bolt.size and bolt.graded else []
     else:
         assert bolt.ring is not None
         inner, outer = (show(d, "m") for d in bolt.ring)
@@ -345,7 +349,8 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
             f'seat = ["{inner}", "{outer}"]',
             f'diameter = "{bolt.size:g} mm"',
             f"material = {quoted(STEEL)}",
-            f'grade = "{GRADE}"  # ASSUMED',
+            *_grade(bolt),
+            *_as_drawn(bolt),
         ]
     if answers.preload is not None:
         lines.append(f'preload = "{show(answers.preload, "N", digits=6)}"')
@@ -355,7 +360,27 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
         lines.append(f'preload = "{show(bolt.preload, "N")}"  # ASSUMED: {_share()}')
     else:
         lines.append('# preload = "10 kN"  # give the force; its thread is not known')
+    for washer in () if bolt.drawn is None else bolt.drawn.washers:
+        sizes = zip(("inner", "outer", "thickness"), washer, strict=True)
+        lines += ["[[bolt.washer]]", *(f'{key} = "{show(d, "m")}"' for key, d in sizes), f"material = {quoted(STEEL)}"]
     return "\n".join([*lines, ""])
+
+
+def _grade(bolt: BoltProposal) -> list[str]:
+    return [f'grade = "{GRADE}"  # ASSUMED'] if bolt.graded else []
+
+
+def _as_drawn(bolt: BoltProposal) -> list[str]:
+    """Keys of the head and the thread, and of the masses that are drawn."""
+    lines = [f"head = {quoted(bolt.shape)}"] if bolt.shape != "hexagon" else []
+    lines += [f'engaged = "{show(bolt.engaged, "m")}"'] if bolt.engaged is not None else []
+    if bolt.drawn is not None:
+        lines += [f'shank = "{show(bolt.drawn.shank, "m")}"'] if bolt.drawn.shank is not None else []
+        kilos = [volume * (CATALOGUE[STEEL].density or 0.0) for volume in bolt.drawn.volumes]
+        lines.append(f'head_mass = "{show(kilos[0], "kg", digits=6)}"  # of its bodies, what is not the shank')
+        if bolt.drawn.tapped or bolt.drawn.has_nut:
+            lines.append(f'nut_mass = "{show(kilos[1], "kg", digits=6)}"  # or the end of the screw')
+    return lines
 
 
 def _dowel(dowel: DowelProposal) -> str:

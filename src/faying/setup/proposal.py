@@ -7,13 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.bolt.threads import MAX_DIAMETER, Fastener, Thread
+from faying.bolt.compliance import Head
+from faying.bolt.threads import STRENGTH_THICK, Fastener, Thread, is_graded
 from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
 from faying.bolt.vdi2230 import greatest_preload
 from faying.errors import InputError
 from faying.geometry.face_facts import GeometryFacts, PartFacts, TouchingFaces, part_distance
 from faying.geometry.selectors import TOUCHING, Selector
 from faying.memory import available
+from faying.setup.drawn_bolts import DrawnBolt
 from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import find_fasteners, quoted
@@ -49,6 +51,9 @@ class BoltProposal:
         at: point on the axis [m]; None where a tapped hole says it.
         ring: inner and outer diameter of the seat [m].
         part: the part that it is, if it is one.
+        shape: of the head.
+        engaged: length in the thread [m]; None where the depth of its hole says it.
+        drawn: the bodies of the file that it stands for, if it does.
         force: what a mesh file pulls it with, as the file writes it; None where it gives none.
         remark: where size and ring come from.
     """
@@ -59,16 +64,28 @@ class BoltProposal:
     at: tuple[float, float, float] | None = None
     ring: tuple[float, float] | None = None
     part: str | None = None
+    shape: Head = "hexagon"
+    engaged: float | None = None
+    drawn: DrawnBolt | None = None
     force: float | None = None
     remark: str = ""
 
     @property
     def preload(self) -> float | None:
-        """The greatest [N] that the bolt sheet accepts of class 8.8, three digits; None where no class is known."""
-        if self.size is None or self.size * 1e-3 > MAX_DIAMETER:
+        """The greatest [N] that the bolt sheet accepts of class 8.8, three digits; None where the size is not known.
+
+        Above M39, where ISO 898-1 ends, with the same strength.
+        """
+        if self.size is None:
             return None
-        fastener = Fastener(thread=Thread.coarse(self.size * 1e-3), grade=GRADE)
-        return rounded(greatest_preload(fastener, scatter=TIGHTENING[DEFAULT_WAY].scatter), 3, up=False)
+        thread = Thread.coarse(self.size * 1e-3)
+        strength = Fastener(thread=thread, grade=GRADE).yield_stress if self.graded else STRENGTH_THICK[1]
+        return rounded(greatest_preload(thread, strength, scatter=TIGHTENING[DEFAULT_WAY].scatter), 3, up=False)
+
+    @property
+    def graded(self) -> bool:
+        """Whether ISO 898-1 has strengths for its thread."""
+        return self.size is not None and is_graded(Thread.coarse(self.size * 1e-3))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,7 +166,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     remarks += left.remarks
     if not bolts:
         remarks.append("no bolt was found: fill in [[bolt]] by hand before you run the study")
-    size, words = mesh_size(facts, {bolt.part for bolt in bolts})
+    size, words = mesh_size(facts, {*(bolt.part for bolt in bolts), *fasteners.washers})
     remarks.append(words)
     named_bolts = tuple(_named(bolt, k, names) for k, bolt in enumerate(bolts, 1))
     dowels = found_dowels(facts, fasteners, names)
@@ -187,6 +204,9 @@ def _named(bolt: FoundBolt, number: int, names: FaceNames) -> BoltProposal:
         at=bolt.at,
         ring=bolt.ring,
         part=bolt.part,
+        shape=bolt.shape,
+        engaged=bolt.engaged,
+        drawn=bolt.drawn,
         remark=bolt.remark,
     )
 
@@ -252,8 +272,11 @@ def _alone(facts: GeometryFacts, path: Path) -> tuple[str, ...]:
 
 
 def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]:
-    """Largest element [m], and why: two across the thinnest part, more where memory or time would not do."""
-    plates = [part for part in facts.parts if part.name not in bolts]
+    """Largest element [m], and why: two across the thinnest part, more where memory or time would not do.
+
+    bolts: parts that do not count: bolts and washers.
+    """
+    plates = [part for part in facts.parts if part.name not in bolts] or list(facts.parts)
     thin = min(plates, key=_thickness)
     size = rounded(_thickness(thin) / ACROSS, 2)
     why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=3)} thick"

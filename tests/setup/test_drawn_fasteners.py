@@ -1,0 +1,70 @@
+"""Assemblies whose fasteners are bodies: number, size, head, nut, washer, engagement and preload, and their mass."""
+
+import numpy as np
+import pytest
+
+import faying
+from faying.case.case import build
+from faying.geometry.cad import read_parts
+from faying.setup import new
+from faying.study import Study
+from tests.helpers import drawn
+from tests.helpers.proposed import proposed
+
+# N, of class 8.8: 0.9 of 640 MPa, 660 above M16, in tension and torsion at mu_G = 0.12, over 1.28 (VDI 2230, R7)
+FORCES = {6: 7940, 8: 14500, 10: 23100, 12: 33600, 16: 63200, 42: 470000}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Name -> the STEP file, what is expected, and the proposal, each made once."""
+    folder, kept = tmp_path_factory.mktemp("drawn"), {}
+
+    def of(name):
+        if name not in kept:
+            path, expected = drawn.MADE[name](folder / f"{name}.step")
+            kept[name] = path, expected, new.find(path)
+        return kept[name]
+
+    return of
+
+
+@pytest.mark.parametrize("name", drawn.MADE)
+def test_bolts_are_found_as_they_are_drawn(made, name):
+    _, expected, found = made(name)
+    assert len(found.bolts) == len(expected), [bolt.remark for bolt in found.bolts]
+    for bolt, one in zip(found.bolts, expected, strict=True):
+        assert bolt.size == one.size
+        assert bolt.shape == one.head
+        assert np.array(bolt.ring) * 1e3 == pytest.approx(one.ring, abs=1e-6)
+        assert (bolt.at is None) == one.tapped
+        assert (0 if bolt.drawn is None else len(bolt.drawn.washers)) == one.washers
+        assert bolt.engaged == (None if one.engaged is None else pytest.approx(one.engaged * 1e-3))
+        assert one.says in bolt.remark
+        assert bolt.preload == pytest.approx(FORCES[one.size], rel=6e-3)
+
+
+@pytest.mark.parametrize("name", drawn.MADE)
+def test_no_fastener_is_meshed(made, name):
+    _, _, found = made(name)
+    assert all(part.name.split()[0] in ("plate", "tube", "lower", "upper") for part in found.facts.parts)
+
+
+SLOW = [
+    pytest.param(name, marks=pytest.mark.slow) for name in drawn.MADE if name not in ("socket_in_thread", "three_parts")
+]
+
+
+@pytest.mark.parametrize("name", ["socket_in_thread", *SLOW])
+def test_the_beams_weigh_what_the_bodies_do(made, name):
+    """Volumes of the bodies that are left out, by the CAD kernel, times the density of steel."""
+    path, _, _ = made(name)
+    study = Study.read(proposed(path, "20 mm"))
+    structure = build(study)
+    along = np.zeros(3 * len(structure.mesh.points))
+    along[0::3] = 1.0
+    beams = sum(along @ bolt.mass @ along for bolt in structure.fitted_bolts)
+    cad = read_parts(path)
+    volumes = dict(zip(cad.names, (1e-9 * solid.mass for solid in cad.solids), strict=True))
+    bodies = sum(volumes[part] for part in study.geometry.leave_out)
+    assert beams == pytest.approx(faying.CATALOGUE["S355"].density * bodies, rel=2e-3)
