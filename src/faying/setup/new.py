@@ -377,9 +377,9 @@ def _as_drawn(bolt: BoltProposal) -> list[str]:
     if bolt.drawn is not None:
         lines += [f'shank = "{show(bolt.drawn.shank, "m")}"'] if bolt.drawn.shank is not None else []
         kilos = [volume * (CATALOGUE[STEEL].density or 0.0) for volume in bolt.drawn.volumes]
-        lines.append(f'head_mass = "{show(kilos[0], "kg", digits=6)}"  # of its bodies, what is not the shank')
+        lines.append(f'head_mass = "{show(kilos[0], "kg", digits=6)}"  # drawn: what of its bodies is not the shank')
         if bolt.drawn.tapped or bolt.drawn.has_nut:
-            lines.append(f'nut_mass = "{show(kilos[1], "kg", digits=6)}"  # or the end of the screw')
+            lines.append(f'nut_mass = "{show(kilos[1], "kg", digits=6)}"  # drawn: nut, or end of the screw')
     return lines
 
 
