@@ -115,7 +115,7 @@ def countersunk(path):
     parts["sunk"] = screw(A, 35, 6, 24, ("sunk", 13.2))
     parts["flanged"] = screw(B, 35, 6, 22, ("flange", 10))
     expected = [
-        Drawn(size=6, head="socket", tapped=True, ring=(6.6, 13.2), engaged=14, says="countersunk head"),
+        Drawn(size=6, tapped=True, ring=(6.6, 13.2), engaged=14, says="countersunk head"),
         Drawn(size=6, tapped=True, ring=(6.6, 15), engaged=12, says="a flange of 15 mm"),
     ]
     return _write(path, **parts), expected
@@ -207,6 +207,36 @@ def repeated(path):
     return _write(path, **parts), [*[Drawn(size=16, ring=(17.5, 24))] * 6, Drawn(size=42, ring=(45, 65))]
 
 
+def turned(path):
+    """A bolt with a fillet under its head, a chamfer at its tip and a chamfered nut drawn at its core, on a slant."""
+    occ, _ = _shapes()
+    parts = _plates((11, 11), (12, 12), [A])
+    bolt, core = screw(A, 24, 10, 45, ("hexagon", 16)), nut(A, -8.4, 8.5, 8.4, 16)
+
+    def rims(shape, height):
+        return [edge for edge in shape.edges if abs(edge.center.z - height) + abs(edge.center.x - A[0]) < 1e-6]
+
+    bolt = next(iter(bolt.MakeChamfer(rims(bolt, 24 - 45), 1.0).solids))
+    parts["bolt"] = bolt.MakeFillet(rims(bolt, 24), 0.4)
+    parts["nut"] = core.MakeChamfer([edge for z in (-8.4, 0) for edge in rims(core, z)], 0.8)
+    slant = occ.Axis((0, 0, 0), occ.Vec(1, 2, 3))
+    parts = {name: next(iter(shape.Rotate(slant, 40).solids)) for name, shape in parts.items()}
+    return _write(path, **parts), [Drawn(size=10, ring=(11, 16), says="nut 'nut'")]
+
+
+def t_slot(path):
+    """A foot on a T-slot with square-headed M8 in it, whose nuts lie on top on washers."""
+    base = _box((0, 120), (-40, 40), (-45, 0)) - _box((0, 120), (-5, 5), (-10, 0)) - _box((0, 120), (-9, 9), (-20, -10))
+    places = ((25, 0), (95, 0))
+    parts = {"plate base": base, "plate foot": _drilled(_box((0, 120), (-30, 30), (0, 16)), places, 0, 16, 9)}
+    _, cylinder = _shapes()
+    for k, (x, y) in enumerate(places, 1):
+        parts[f"bolt {k}"] = _box((x - 8, x + 8), (-8, 8), (-16, -10)) + cylinder(x, y, -10, 30, 4)
+        parts[f"washer {k}"] = washer((x, y), 16, (8.4, 16, 1.6))
+        parts[f"nut {k}"] = nut((x, y), 17.6, 8, 6.8, 13)
+    return _write(path, **parts), [Drawn(size=8, ring=(9, 16), washers=1)] * 2
+
+
 MADE = {
     one.__name__: one
     for one in (
@@ -220,5 +250,7 @@ MADE = {
         three_parts,
         spring_washers,
         repeated,
+        turned,
+        t_slot,
     )
 }

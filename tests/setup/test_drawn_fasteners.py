@@ -8,7 +8,7 @@ from faying.case.case import build
 from faying.geometry.cad import read_parts
 from faying.setup import new
 from faying.study import Study
-from tests.helpers import drawn
+from tests.helpers import assemblies, drawn
 from tests.helpers.proposed import proposed
 
 # N, of class 8.8: 0.9 of 640 MPa, 660 above M16, in tension and torsion at mu_G = 0.12, over 1.28 (VDI 2230, R7)
@@ -48,6 +48,16 @@ def test_bolts_are_found_as_they_are_drawn(made, name):
 def test_no_fastener_is_meshed(made, name):
     _, _, found = made(name)
     assert all(part.name.split()[0] in ("plate", "tube", "lower", "upper") for part in found.facts.parts)
+
+
+def test_a_shaft_with_a_collar_asks_for_no_bolt(tmp_path):
+    """Its holes of 20 mm are medium clearance holes of M18 (ISO 273), and it leaves no play in them."""
+    cylinder = assemblies._shapes()[1]
+    parts = drawn._plates((20, 20), (20, 20), [drawn.A])
+    shaft = cylinder(*drawn.A, -30, 60, 10) + cylinder(*drawn.A, 40, 48, 14)
+    found = new.find(assemblies._write(tmp_path / "shaft.step", **parts, shaft=shaft))
+    assert not found.bolts
+    assert found.left_out == ("shaft",)
 
 
 SLOW = [

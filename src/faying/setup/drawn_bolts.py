@@ -355,5 +355,5 @@ def _head_words(row: _Row) -> str:
         return "countersunk head"
     wide = show(bearing.outer, "m")
     if stem.flats is None:
-        return f"cylindrical head of {wide}"
+        return f"{'cylindrical ' * stem.round_head}head of {wide}"
     return f"hexagon head of {show(stem.flats, 'm')}" + f" and a flange of {wide}" * (bearing.outer > 1.1 * stem.flats)

@@ -81,6 +81,7 @@ class FastenerForm:
         reach: how far it reaches from its axis.
         flats: width across the flats of a hexagon; None without.
         stems: radius, begin and end of each cylinder of the stem.
+        round_head: whether a cylinder is the widest of it.
         head: +1 for a head at its end, -1 for one at its beginning, 0 for none, or for two.
         bearings: planes that look back (-1) and ahead (+1).
         split: whether it is a ring that does not close.
@@ -96,6 +97,7 @@ class FastenerForm:
     reach: float
     flats: float | None
     stems: tuple[tuple[float, float, float], ...]
+    round_head: bool
     head: int
     bearings: dict[int, Bearing]
     split: bool
@@ -135,7 +137,7 @@ class FastenerForm:
     @property
     def shape(self) -> Head:
         """What the compliance of its head is taken of."""
-        return "hexagon" if self.flats is not None else "socket"
+        return "socket" if self.round_head and self.flats is None else "hexagon"
 
     @property
     def size(self) -> float | None:
@@ -199,6 +201,7 @@ def _form(facts: GeometryFacts, part: str, volume: float) -> FastenerForm | None
         reach=reach,
         flats=flats,
         stems=tuple(one[:3] for one in stems),
+        round_head=any(one[0] > WIDER * radius for one in tubes),
         head=head,
         bearings=dict(_bearings(faces, line, about, 0.0 if ring else radius, flats)),
         split=ring and min(one[3] for one in stems) < CLOSED,

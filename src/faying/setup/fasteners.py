@@ -25,12 +25,16 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class MeshedBolt:
-    """A part that is a bolt with its nut: the part, its shank, and its faces under the head and at the nut."""
+    """A part that is a bolt with its nut: the part, its shank, and its faces under the head and at the nut.
+
+    tight: whether it has no play in its holes, as a rivet has none.
+    """
 
     part: str
     shank: FaceFacts
     head: FaceFacts
     nut: FaceFacts
+    tight: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +62,8 @@ class Fasteners:
         dowels: parts that are dowels, which are left out, too: pins without a mesh stand for them.
         others: parts that are left out: bolts, studs and nuts whose holes or seats are not found.
         washers: washers that are not left out.
-        shanks: part and number of the faces of holes in which a meshed bolt or a dowel runs.
+        shanks: part and number of the faces of holes in which a meshed bolt or a dowel runs, or another part without
+            play.
     """
 
     meshed: tuple[MeshedBolt, ...] = ()
@@ -119,7 +124,7 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
         if facts.face(*one).kind == "cylinder" and not facts.face(*one).hole
     ]
     shafts = {part.name: mine for part in facts.parts if (mine := _shaft(facts, part.name, pairs))}
-    meshed = [bolt for mine in shafts.values() if (bolt := _meshed(facts, joints, mine[0][0])) is not None]
+    meshed = [bolt for mine in shafts.values() if (bolt := _meshed(facts, joints, mine)) is not None]
     solid = {bolt.part for bolt in meshed}
     found = [form for form in forms(facts) if form.part not in solid]
     drawn = drawn_bolts(facts, found, solid)
@@ -137,13 +142,14 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
         else:
             others += [part.name, *(hole.part for shank, hole, gap in mine if _is_nut(facts, shank, hole, gap))]
     owners = {*solid, *(pin.part for pin in dowels)}
+    tight = {shank.part for shank, _, gap in pairs if shank.part in others and gap <= TIGHT * (shank.radius or 0.0)}
     return Fasteners(
         meshed=tuple(meshed),
         drawn=tuple(drawn),
         dowels=tuple(dowels),
         others=tuple(one for one in dict.fromkeys(others) if one not in taken),
         washers=tuple(form.part for form in found if form.is_washer and form.part not in taken),
-        shanks=frozenset((hole.part, hole.number) for shank, hole, _ in pairs if shank.part in owners),
+        shanks=frozenset((hole.part, hole.number) for shank, hole, _ in pairs if shank.part in owners | tight),
     )
 
 
@@ -155,13 +161,15 @@ def _shaft(facts: GeometryFacts, part: str, pairs: Sequence[Pair]) -> list[Pair]
     return mine
 
 
-def _meshed(facts: GeometryFacts, joints: Sequence[TouchingFaces], shank: FaceFacts) -> MeshedBolt | None:
-    """The bolt that a part is with its nut: one flat face presses at each end of its shank."""
+def _meshed(facts: GeometryFacts, joints: Sequence[TouchingFaces], mine: Sequence[Pair]) -> MeshedBolt | None:
+    """The bolt that a part is with its nut, from its shaft: one flat face presses at each end of its shank."""
+    shank = mine[0][0]
     low, high = _pressed(facts, joints, shank)
     if len(low) != 1 or len(high) != 1:
         return None
     head = max((low[0], high[0]), key=lambda face: face.area)
-    return MeshedBolt(part=shank.part, shank=shank, head=head, nut=high[0] if head is low[0] else low[0])
+    tight = all(gap <= TIGHT * (shank.radius or 0.0) for _, _, gap in mine)
+    return MeshedBolt(part=shank.part, shank=shank, head=head, nut=high[0] if head is low[0] else low[0], tight=tight)
 
 
 def _pressed(

@@ -155,7 +155,8 @@ def _meshed(facts: GeometryFacts, bolt: MeshedBolt) -> FoundBolt:
         words=("head", "nut"),
         size=size,
         part=bolt.part,
-        remark=f"the part {bolt.part!r} is the bolt",
+        remark=f"the part {bolt.part!r} is the bolt"
+        + "; it has no play: if it is a rivet, give the force that it was set with" * bolt.tight,
     )
 
 
