@@ -6,14 +6,13 @@ from math import pi
 
 import numpy as np
 
-from faying.bolt.compliance import Head
 from faying.bolt.standards import NOMINAL, metric
 from faying.bolt.tapped import INSIDE
 from faying.geometry.bores import Bore, bores, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
 from faying.geometry.seats import countersink
+from faying.setup.bolt_proposal import BoltProposal, DrawnBodies, to_nanometres
 from faying.setup.fastener_forms import PLAY, Bearing, FastenerForm, Line
-from faying.typing import Array
 from faying.units import show
 
 ASIDE = 0.2  # of the radius of a stem: how far the axes of its holes, nuts and washers lie from its own
@@ -21,51 +20,6 @@ WIDEST = 2.0  # stem diameters: wider holes on its axis are not its own
 OUT = 0.3  # diameters: a stem that stands out of its last hole by more ends in a nut, drawn or not
 CLOSE = 1e-5  # m: surfaces that CAD draws as touching, with what programs round
 SHALLOW = 0.8  # diameters of engagement below which a thread of the bolt's own strength strips (VDI 2230, R11)
-
-Side = tuple[str, int]
-
-
-@dataclass(frozen=True, kw_only=True)
-class DrawnBolt:
-    """A bolt as it is drawn; lengths [m].
-
-    Args:
-        part: the body with the stem; rings: its nuts, then its washers.
-        axis: unit direction (3,) from head to end; point: on it (3,).
-        size: nominal diameter [mm].
-        parts: what it clamps.
-        head, end: faces under the head, and at the nut or of the thread.
-        words: what these faces are called.
-        ring: inner and outer diameter of the seat.
-        tapped: whether it ends in a thread; has_nut: whether its nut is drawn.
-        shape: of the head.
-        washers: inner, outer diameter and thickness of each.
-        engaged: length in the thread; None for a nut.
-        shank: length of the plain shank, where it is drawn apart from the thread.
-        volumes: [m3] that rest on the head's side and at the end: all but the shank between the seats.
-        holes: faces of all holes that are its own.
-        remark: what it is, and what is odd about it.
-    """
-
-    part: str
-    rings: tuple[str, ...]
-    axis: Array
-    point: Array
-    size: float
-    parts: tuple[str, ...]
-    head: tuple[FaceFacts, ...]
-    end: tuple[FaceFacts, ...]
-    words: tuple[str, str]
-    ring: tuple[float, float]
-    tapped: bool
-    has_nut: bool
-    shape: Head
-    washers: tuple[tuple[float, float, float], ...]
-    engaged: float | None
-    shank: float | None
-    volumes: tuple[float, float]
-    holes: frozenset[Side]
-    remark: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,12 +47,14 @@ class _Row:
         return min(low for low, _ in self.spans), max(high for _, high in self.spans)
 
     def nuts(self, end: int) -> list[FastenerForm]:
-        """Nuts on the head's side (0) or at the end (1)."""
-        return [ring for ring in self.rings[end] if ring.fits(self.stem)]
+        """Nuts on the head's side (0) or at the end (1): rings without play, where there is no head."""
+        tight = [ring for ring in self.rings[end] if ring.fits(self.stem.radius) and (end or not self.stem.head)]
+        return [ring for ring in tight if not ring.is_washer] or tight
 
     def washers(self, end: int) -> list[FastenerForm]:
         """Washers there, from the parts outwards."""
-        return [ring for ring in self.rings[end] if not ring.fits(self.stem)]
+        nuts = self.nuts(end)
+        return [ring for ring in self.rings[end] if ring not in nuts]
 
     @property
     def tip(self) -> float:
@@ -118,7 +74,7 @@ class _Row:
         )
 
 
-def drawn_bolts(facts: GeometryFacts, found: Sequence[FastenerForm], solid: Iterable[str]) -> list[DrawnBolt]:
+def drawn_bolts(facts: GeometryFacts, found: Sequence[FastenerForm], solid: Iterable[str]) -> list[BoltProposal]:
     """The bolts whose bodies are drawn.
 
     Args:
@@ -132,7 +88,7 @@ def drawn_bolts(facts: GeometryFacts, found: Sequence[FastenerForm], solid: Iter
         ring.part
         for ring in rings
         for stem in stems
-        if stem.line.holds(ring.line, ASIDE * stem.radius) and ring.fits(stem)
+        if stem.line.holds(ring.line, ASIDE * stem.radius) and ring.fits(stem.radius)
     }
     holes = [bore for bore in bores(facts) if bore.part not in aside | nuts]
     made = []
@@ -168,7 +124,7 @@ def _row(stem: FastenerForm, rings: Sequence[FastenerForm], holes: Sequence[Bore
         at = line.span(ring.line, ring.low, ring.high)
         if not line.holds(ring.line, ASIDE * stem.radius) or at[0] > high + CLOSE or at[1] < low - CLOSE:
             continue
-        if not ring.fits(stem) and not (ring.is_washer and stem.radius <= ring.radius <= WIDEST * stem.radius):
+        if not ring.fits(stem.radius) and not (ring.is_washer and stem.radius <= ring.radius <= WIDEST * stem.radius):
             continue
         if at[1] <= first + CLOSE:
             before.append((-at[1], ring))
@@ -187,7 +143,7 @@ def _row(stem: FastenerForm, rings: Sequence[FastenerForm], holes: Sequence[Bore
     return row if stem.head or row.nuts(0) else None
 
 
-def _bolt(facts: GeometryFacts, row: _Row) -> DrawnBolt | None:
+def _bolt(facts: GeometryFacts, row: _Row) -> BoltProposal | None:
     """The bolt of a stem in its holes; None where its size or one of its seats is not known."""
     stem, size = row.stem, row.stem.size
     if size is None:
@@ -216,25 +172,26 @@ def _bolt(facts: GeometryFacts, row: _Row) -> DrawnBolt | None:
     used = [form for side in (0, 1) for form in (*row.nuts(side), *row.washers(side))]
     washers = [form for side in (0, 1) for form in row.washers(side)]
     parts = dict.fromkeys((*(bore.part for bore in row.bores), *(face.part for face in (*head, *end))))
-    return DrawnBolt(
-        part=stem.part,
-        rings=tuple(form.part for form in sorted(used, key=lambda form: form in washers)),
+    point = row.line.point + (at[0] + length / 2) * row.line.axis
+    return BoltProposal(
         axis=row.line.axis,
-        point=row.line.point + (at[0] + length / 2) * row.line.axis,
-        size=size,
         parts=tuple(parts),
         head=head,
         end=end,
         words=("seat" if cone is None else "countersink", "thread" if tapped else "seat"),
+        size=size,
+        at=None if tapped else to_nanometres(point),
         ring=(round(inner, 9), round(outer, 9)),
-        tapped=tapped,
-        has_nut=bool(row.nuts(1)),
         shape=stem.shape if stem.head else "hexagon",
-        washers=tuple((round(w.diameter, 9), round(2 * w.reach, 9), round(w.length, 9)) for w in washers),
         engaged=None if engaged is None else round(engaged, 9),
-        shank=_plain(row, at[0], mouth if tapped else at[1]),
-        volumes=_volumes(row, size, at[0], length),
-        holes=frozenset((bore.part, number) for bore in row.bores for number in bore.faces),
+        drawn=DrawnBodies(
+            names=(stem.part, *(form.part for form in sorted(used, key=lambda form: form in washers))),
+            washers=tuple((round(w.diameter, 9), round(2 * w.reach, 9), round(w.length, 9)) for w in washers),
+            shank=_plain(row, at[0], mouth if tapped else at[1]),
+            volumes=_volumes(row, size, at[0], length),
+            has_end=tapped or bool(row.nuts(1)),
+            holes=frozenset(side for bore in row.bores for side in bore.sides),
+        ),
         remark=_remark(row, size, tapped, engaged),
     )
 

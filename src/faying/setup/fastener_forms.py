@@ -27,7 +27,7 @@ THIN = 0.35  # of its hole: what a washer is thick at most; ISO 7089 has 0.2, sp
 LARGE = 3.2  # of its hole: what a washer is wide at most; large ones of ISO 7093 have 3
 PLAY = 0.01  # of the radius: what a nut or a thread is wider than a stem at most
 CORE = 0.7  # of the radius of a stem: the narrowest hole of its nut or thread; ISO 724 has 0.73 for M1.6
-NUT = 1.25, 2.5  # stem diameters: the farthest that a nut reaches from the axis, and how long it is at most
+NUT = 1.3, 2.5  # stem diameters: the farthest that a nut reaches from the axis, and how long it is at most
 DRAWN = 0.02  # of its diameter: how far a stem may be from the size that it is drawn as
 
 
@@ -68,7 +68,7 @@ class Bearing:
     outer: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class FastenerForm:
     """A body of the form of a fastener; lengths [m], depths along its line.
 
@@ -128,11 +128,10 @@ class FastenerForm:
             and self.reach <= LARGE * self.radius
         )
 
-    def fits(self, stem: "FastenerForm") -> bool:
-        """Whether it is a nut of a stem: a ring that is small and has no play on it."""
-        tight = CORE * stem.radius <= self.radius <= (1 + PLAY) * stem.radius
-        small = self.reach <= NUT[0] * stem.diameter and self.length <= NUT[1] * stem.diameter
-        return self.ring and tight and small and not (self.is_washer and self.radius > stem.radius * (1 - PLAY))
+    def fits(self, radius: float) -> bool:
+        """Whether it is a nut of a stem of a radius [m]: a ring that is small and has no play on it."""
+        tight = CORE * radius <= self.radius <= (1 + PLAY) * radius
+        return self.ring and tight and self.reach <= NUT[0] * 2 * radius and self.length <= NUT[1] * 2 * radius
 
     @property
     def shape(self) -> Head:
@@ -179,7 +178,7 @@ def _form(facts: GeometryFacts, part: str, volume: float) -> FastenerForm | None
     stems = tubes if ring else _stems(tubes)
     if not stems or (not ring and reach > SLENDER * max(radius for radius, *_ in stems)):
         return None
-    if any(face.hole and not line.holds(_line(face), ASIDE * (face.radius or 0.0)) for face in faces):
+    if any(face.hole and not line.holds(line_of(face), ASIDE * (face.radius or 0.0)) for face in faces):
         return None  # a part with holes for others
     radius = min(one[0] for one in stems) if ring else max(one[0] for one in stems)
     head = 0
@@ -209,7 +208,7 @@ def _form(facts: GeometryFacts, part: str, volume: float) -> FastenerForm | None
     )
 
 
-def _line(face: FaceFacts) -> Line:
+def line_of(face: FaceFacts) -> Line:
     """The axis of a cylinder."""
     return Line(point=np.array(face.start), axis=np.array(face.axis))
 
@@ -220,7 +219,7 @@ def _axis(faces: Sequence[FaceFacts]) -> Line | None:
     for face in faces:
         if face.kind != "cylinder":
             continue
-        line = _line(face)
+        line = line_of(face)
         near = [k for k, (one, _) in enumerate(found) if one.holds(line, 1e-3 * (face.radius or 0.0))]
         if near:
             found[near[0]] = (found[near[0]][0], found[near[0]][1] + face.area)
@@ -235,12 +234,12 @@ def _cylinders(faces: Sequence[FaceFacts], line: Line, *, hole: bool) -> list[tu
     for face in faces:
         if face.kind != "cylinder" or face.hole is not hole or face.radius is None:
             continue
-        if line.holds(_line(face), ASIDE * face.radius):
+        if line.holds(line_of(face), ASIDE * face.radius):
             same = next((radius for radius in found if abs(radius - face.radius) < 1e-4 * radius), face.radius)
             found.setdefault(same, []).append(face)
     out = []
     for radius, some in found.items():
-        spans = [line.span(_line(face), 0.0, face.length or 0.0) for face in some]
+        spans = [line.span(line_of(face), 0.0, face.length or 0.0) for face in some]
         low, high = min(span[0] for span in spans), max(span[1] for span in spans)
         share = sum(face.area for face in some) / (2 * pi * radius * (high - low))
         if share > ROUND:

@@ -8,15 +8,13 @@ from math import pi
 import numpy as np
 
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, TouchingFaces
-from faying.setup.drawn_bolts import DrawnBolt, drawn_bolts
-from faying.setup.fastener_forms import forms
+from faying.setup.bolt_proposal import BoltProposal, to_nanometres
+from faying.setup.drawn_bolts import drawn_bolts
+from faying.setup.fastener_forms import PLAY, SLENDER, forms, line_of
 from faying.text import listed
 from faying.typing import Array
 
-SLENDER = 1.5  # shank diameters from its axis, beyond which a part with a shank is not a bolt (but a spigot, say)
-NUT = 1.25, 2.5  # shank diameters: the farthest that a nut reaches from the axis, and how long it is at most
 SOLID = 0.75  # of the volume of a cylinder, below which a pin is hollow
-TIGHT = 1e-2  # of the radius: gap between shank and hole below which they fit without play
 
 Side = tuple[str, int]
 Pair = tuple[FaceFacts, FaceFacts, float]  # a shaft, the hole round it, and the gap [m]
@@ -67,7 +65,7 @@ class Fasteners:
     """
 
     meshed: tuple[MeshedBolt, ...] = ()
-    drawn: tuple[DrawnBolt, ...] = ()
+    drawn: tuple[BoltProposal, ...] = ()
     dowels: tuple[DrawnPin, ...] = ()
     others: tuple[str, ...] = ()
     washers: tuple[str, ...] = ()
@@ -81,7 +79,8 @@ class Fasteners:
     @property
     def of_bolts(self) -> tuple[str, ...]:
         """Parts that are bolts with their nuts and washers: the stems of all, then the rest."""
-        return (*(bolt.part for bolt in self.drawn), *(ring for bolt in self.drawn for ring in bolt.rings))
+        bodies = [bolt.drawn.names for bolt in self.drawn if bolt.drawn is not None]
+        return (*(names[0] for names in bodies), *(name for names in bodies for name in names[1:]))
 
     @property
     def remarks(self) -> list[str]:
@@ -128,21 +127,24 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
     solid = {bolt.part for bolt in meshed}
     found = [form for form in forms(facts) if form.part not in solid]
     drawn = drawn_bolts(facts, found, solid)
-    taken = solid | {one for bolt in drawn for one in (bolt.part, *bolt.rings)}
+    taken = solid | {name for bolt in drawn if bolt.drawn is not None for name in bolt.drawn.names}
     dowels, others = [], []
     for part in facts.parts:
         mine = shafts.get(part.name, [])
         if not mine or part.name in taken:
             continue
-        close = TIGHT * (mine[0][0].radius or 0.0)
+        close = PLAY * (mine[0][0].radius or 0.0)
         holes = tuple(hole for _, hole, gap in mine if gap <= close)
         pressed = any(_pressed(facts, joints, mine[0][0]))
-        if not pressed and len({hole.part for hole in holes}) > 1 and not any(_is_nut(facts, *pair) for pair in mine):
+        nuts = [
+            form.part for form in found if form.fits(mine[0][0].radius or 0.0) and form.part in {h.part for h in holes}
+        ]
+        if not pressed and not nuts and len({hole.part for hole in holes}) > 1:
             dowels.append(_pin(facts, part, mine[0][0], holes))
         else:
-            others += [part.name, *(hole.part for shank, hole, gap in mine if _is_nut(facts, shank, hole, gap))]
+            others += [part.name, *nuts]
     owners = {*solid, *(pin.part for pin in dowels)}
-    tight = {shank.part for shank, _, gap in pairs if shank.part in others and gap <= TIGHT * (shank.radius or 0.0)}
+    tight = {shank.part for shank, _, gap in pairs if shank.part in others and gap <= PLAY * (shank.radius or 0.0)}
     return Fasteners(
         meshed=tuple(meshed),
         drawn=tuple(drawn),
@@ -156,7 +158,7 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
 def _shaft(facts: GeometryFacts, part: str, pairs: Sequence[Pair]) -> list[Pair]:
     """A shaft of a part that is slender enough for a fastener, with the holes that it runs in; none for other parts."""
     mine = [pair for pair in pairs if pair[0].part == part]
-    if not mine or _reach(facts, part, mine[0][0])[0] > 2 * SLENDER * (mine[0][0].radius or 0.0):
+    if not mine or _about(facts, mine[0][0])[0].max() > SLENDER * (mine[0][0].radius or 0.0):
         return []
     return mine
 
@@ -168,7 +170,7 @@ def _meshed(facts: GeometryFacts, joints: Sequence[TouchingFaces], mine: Sequenc
     if len(low) != 1 or len(high) != 1:
         return None
     head = max((low[0], high[0]), key=lambda face: face.area)
-    tight = all(gap <= TIGHT * (shank.radius or 0.0) for _, _, gap in mine)
+    tight = all(gap <= PLAY * (shank.radius or 0.0) for _, _, gap in mine)
     return MeshedBolt(part=shank.part, shank=shank, head=head, nut=high[0] if head is low[0] else low[0], tight=tight)
 
 
@@ -190,45 +192,17 @@ def _pressed(
 def _beyond(facts: GeometryFacts, face: FaceFacts, shank: FaceFacts) -> bool:
     """Whether a face reaches farther from the axis than the shank does."""
     assert shank.radius is not None
-    return bool(_about(facts.triangles(face), shank)[0].max() > (1 + TIGHT) * shank.radius)
+    return bool(line_of(shank).about(facts.triangles(face))[0].max() > (1 + PLAY) * shank.radius)
 
 
-def _is_nut(facts: GeometryFacts, shank: FaceFacts, hole: FaceFacts, gap: float) -> bool:
-    """Whether the part of a hole is a nut on a shank: small, and without play."""
-    assert shank.radius is not None
-    reach, length = _reach(facts, hole.part, shank)
-    diameter = 2 * shank.radius
-    return gap <= TIGHT * shank.radius and reach <= NUT[0] * diameter and length <= NUT[1] * diameter
-
-
-def _reach(facts: GeometryFacts, part: str, shank: FaceFacts) -> tuple[float, float]:
-    """How far a part reaches from the axis of a shank, and its length along it [m]."""
-    arm, depth = _about(_corners(facts, part), shank)
-    return float(arm.max()), float(np.ptp(depth))
-
-
-def _corners(facts: GeometryFacts, part: str) -> Array:
-    """Corners of the triangles of a part [m]."""
-    return np.concatenate([facts.triangles(face) for face in facts.by_part[part]])
-
-
-def _about(points: Array, shank: FaceFacts) -> tuple[Array, Array]:
-    """How far points (..., 3) [m] lie from the axis of a shank, and how far along it from its start [m]."""
-    axis = np.array(shank.axis)
-    arm = points.reshape(-1, 3) - np.array(shank.start)
-    depth = arm @ axis
-    return np.linalg.norm(arm - np.outer(depth, axis), axis=1), depth
+def _about(facts: GeometryFacts, shank: FaceFacts) -> tuple[Array, Array]:
+    """How far a part reaches from the axis of its shank, and how far along it from its start [m]: all its corners."""
+    return line_of(shank).about(np.concatenate([facts.triangles(face) for face in facts.by_part[shank.part]]))
 
 
 def _pin(facts: GeometryFacts, part: PartFacts, shank: FaceFacts, holes: tuple[FaceFacts, ...]) -> DrawnPin:
-    depth = _about(_corners(facts, part.name), shank)[1]
+    depth = _about(facts, shank)[1]
     low, high = (np.array(shank.start) + z * np.array(shank.axis) for z in (depth.min(), depth.max()))
     ends = to_nanometres(low), to_nanometres(high)
     cylinder = pi * (shank.radius or 0.0) ** 2 * float(np.linalg.norm(np.subtract(*ends)))
     return DrawnPin(part=part.name, shank=shank, holes=holes, ends=ends, hollow=part.volume < SOLID * cylinder)
-
-
-def to_nanometres(place: Array) -> Point:
-    """A point (3,) [m] to the last digit that a study needs."""
-    x, y, z = (round(float(value), 9) + 0.0 for value in place)
-    return x, y, z

@@ -11,9 +11,9 @@ from faying.bolt.tapped import ENGAGED
 from faying.geometry.bores import Bore, Stack, room_around, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.seats import Countersink, countersink, lips
-from faying.setup.drawn_bolts import DrawnBolt
+from faying.setup.bolt_proposal import BoltProposal, to_nanometres
 from faying.setup.fastener_forms import DRAWN
-from faying.setup.fasteners import Fasteners, MeshedBolt, quoted, to_nanometres
+from faying.setup.fasteners import Fasteners, MeshedBolt, quoted
 from faying.setup.found_dowels import free_rows, like_dowel, size_of, takes_dowel
 from faying.typing import Array
 from faying.units import show
@@ -22,40 +22,6 @@ CHORDS = 1.02  # by so much a round edge is wider than its chords
 WIDEST = 1.1e-3 * METRIC[max(COMMON)].holes[2]  # m: wider holes are for no bolt that is known here
 SUNK = 1.6  # nominal diameters from which a cone at the mouth of a hole is a countersink, and no chamfer
 PLACES = 3  # rows of holes whose places a remark says
-
-
-@dataclass(frozen=True, kw_only=True)
-class FoundBolt:
-    """A bolt: what it presses on, before faces have names.
-
-    Args:
-        axis: unit direction (3,).
-        parts: what it clamps.
-        head, end: the faces under the head, and those at the nut or of the thread.
-        words: what these faces are called.
-        size: nominal diameter [mm]; None where it is not known.
-        at: point on the axis [m]; None where a tapped hole or a meshed bolt says it.
-        ring: inner and outer diameter of the seat [m]; None for a meshed bolt.
-        part: the part that it is, if it is one.
-        shape: of the head.
-        engaged: length in the thread [m]; None where the depth of its hole says it.
-        drawn: the bodies of the file that it stands for, if it does.
-        remark: where size and ring come from.
-    """
-
-    axis: Array
-    parts: tuple[str, ...]
-    head: tuple[FaceFacts, ...]
-    end: tuple[FaceFacts, ...]
-    words: tuple[str, str] = ("seat", "seat")
-    size: float | None = None
-    at: tuple[float, float, float] | None = None
-    ring: tuple[float, float] | None = None
-    part: str | None = None
-    shape: Head = "hexagon"
-    engaged: float | None = None
-    drawn: DrawnBolt | None = None
-    remark: str = ""
 
 
 @dataclass
@@ -81,7 +47,7 @@ class LeftOut:
 
 def found_bolts(
     facts: GeometryFacts, fasteners: Fasteners, joints: Sequence[TouchingFaces], out: LeftOut
-) -> list[FoundBolt]:
+) -> list[BoltProposal]:
     """The bolts of a geometry: parts that are bolts, bolts that are drawn, and rows of holes that take one.
 
     Args:
@@ -90,7 +56,7 @@ def found_bolts(
         joints: the planes that touch.
         out: takes the rows of holes that have no bolt.
     """
-    found = [*(_meshed(facts, bolt) for bolt in fasteners.meshed), *map(_drawn, fasteners.drawn)]
+    found = [*(_meshed(facts, bolt) for bolt in fasteners.meshed), *fasteners.drawn]
     met = {side for contact in joints for side in contact.sides}
     for stack in (one for row in free_rows(facts, fasteners) for one in _from_both_sides(row)):
         if 2 * min(bore.radius for bore in stack.bores) > WIDEST or takes_dowel(facts, stack):
@@ -103,7 +69,7 @@ def found_bolts(
     return [_in_shared_thread(bolt, found) for bolt in found]
 
 
-def _in_shared_thread(bolt: FoundBolt, found: Sequence[FoundBolt]) -> FoundBolt:
+def _in_shared_thread(bolt: BoltProposal, found: Sequence[BoltProposal]) -> BoltProposal:
     """A screw that meets another one in the middle of a thread engages half of it at most."""
     shared = [one for one in found if one is not bolt and one.end == bolt.end and bolt.words[1] == "thread"]
     depth = max((face.length or 0.0 for face in bolt.end), default=0.0)
@@ -111,24 +77,6 @@ def _in_shared_thread(bolt: FoundBolt, found: Sequence[FoundBolt]) -> FoundBolt:
         return bolt
     half = round(min(ENGAGED * 1e-3 * bolt.size, depth / 2), 9)
     return replace(bolt, engaged=half, remark=f"{bolt.remark}; another screw comes from the other side")
-
-
-def _drawn(bolt: DrawnBolt) -> FoundBolt:
-    """A bolt as it is drawn."""
-    return FoundBolt(
-        axis=bolt.axis,
-        parts=bolt.parts,
-        head=bolt.head,
-        end=bolt.end,
-        words=bolt.words,
-        size=bolt.size,
-        at=None if bolt.tapped else to_nanometres(bolt.point),
-        ring=bolt.ring,
-        shape=bolt.shape,
-        engaged=bolt.engaged,
-        drawn=bolt,
-        remark=bolt.remark,
-    )
 
 
 def _from_both_sides(stack: Stack) -> list[Stack]:
@@ -143,11 +91,11 @@ def _from_both_sides(stack: Stack) -> list[Stack]:
     return [stack]
 
 
-def _meshed(facts: GeometryFacts, bolt: MeshedBolt) -> FoundBolt:
+def _meshed(facts: GeometryFacts, bolt: MeshedBolt) -> BoltProposal:
     assert bolt.shank.radius is not None
     size = nearest_size(2e3 * bolt.shank.radius, lambda one: one.size, DRAWN)
     clamped = {part for contact in facts.contacts if bolt.part in contact.parts for part in contact.parts}
-    return FoundBolt(
+    return BoltProposal(
         axis=np.array(bolt.shank.axis),
         parts=tuple(sorted(clamped - {bolt.part})),
         head=(bolt.head,),
@@ -166,7 +114,7 @@ def _opens(facts: GeometryFacts, bore: Bore, met: set[tuple[str, int]]) -> bool:
     return size_for_hole(2 * bore.radius) is not None and any((bore.part, number) in met for number in near)
 
 
-def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
+def _in_slot(facts: GeometryFacts, stack: Stack) -> BoltProposal | None:
     """A bolt whose nut, or head, pulls the lips of a T-slot beyond the end of a row of clearance holes."""
     sizes = {size_for_hole(2 * bore.radius) for bore in stack.bores}
     size = sizes.pop()
@@ -183,7 +131,7 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
         room = 2 * CHORDS * room_around(facts, under, ends[not top])
         outer, why = _outer(size, room)
         owner = found[0].part
-        return FoundBolt(
+        return BoltProposal(
             axis=stack.axis,
             parts=(*stack.parts, owner),
             head=(under,),
@@ -201,7 +149,7 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> FoundBolt | None:
     return None
 
 
-def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> FoundBolt | None:
+def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> BoltProposal | None:
     """The bolt of a row of holes through several parts; None, noted in `out`, where none fits."""
     found = size_of(stack)
     low, high = stack.ends
@@ -266,11 +214,11 @@ def _screw(
     tapped: Bore,
     size: float,
     sunk: float | None,
-) -> FoundBolt:
+) -> BoltProposal:
     """A screw into a tapped hole; head: the hole under its head, and the faces that it presses; sunk: as of `_sunk`."""
     bore, under = head
     why = "seat: from the hole to the diameter of its head, ISO 4762" if sunk is None else "a countersunk head"
-    return FoundBolt(
+    return BoltProposal(
         axis=stack.axis,
         parts=stack.parts,
         head=under,
@@ -286,10 +234,10 @@ def _screw(
     )
 
 
-def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: float, outer: float) -> FoundBolt:
+def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: float, outer: float) -> BoltProposal:
     """A countersunk screw with a nut; outer: diameter [m] at the wide end of the cone."""
     hole = 2 * min(bore.radius for bore in stack.bores)
-    return FoundBolt(
+    return BoltProposal(
         axis=stack.axis,
         parts=stack.parts,
         head=cone,
@@ -302,13 +250,13 @@ def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: float
     )
 
 
-def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFacts], size: float) -> FoundBolt:
+def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFacts], size: float) -> BoltProposal:
     last = stack.ends
     widest = max(last, key=lambda bore: (bore.slot is not None, bore.radius))
     room = 2 * CHORDS * min(room_around(facts, end, bore) for end, bore in zip(ends, last, strict=True))
     outer, why = _outer(size, room)
     pin = "" if not like_dowel(stack) else "; if the holes are those of a dowel, give a [[dowel]] in its place"
-    return FoundBolt(
+    return BoltProposal(
         axis=stack.axis,
         parts=stack.parts,
         head=(ends[0],),
@@ -326,12 +274,14 @@ def _hole(bore: Bore) -> str:
     return f"a hole of {wide}" if bore.slot is None else f"a slot {wide} wide"
 
 
-def clamped_along(found: Sequence[FoundBolt], one: str, two: str) -> list[Array]:
+def clamped_along(found: Sequence[BoltProposal], one: str, two: str) -> list[Array]:
     """Axes of the bolts that clamp two parts together."""
     return [bolt.axis for bolt in found if one in bolt.parts and two in bolt.parts]
 
 
-def shoulders(facts: GeometryFacts, joints: Sequence[TouchingFaces], found: Sequence[FoundBolt]) -> list[TouchingFaces]:
+def shoulders(
+    facts: GeometryFacts, joints: Sequence[TouchingFaces], found: Sequence[BoltProposal]
+) -> list[TouchingFaces]:
     """Faces that touch along the bolts of their two parts, as the shoulder of a stepped lap: no bolt presses them."""
     out = []
     for contact in joints:

@@ -60,7 +60,7 @@ def found_dowels(facts: GeometryFacts, fasteners: Fasteners, names: FaceNames) -
 def free_rows(facts: GeometryFacts, fasteners: Fasteners) -> list[Stack]:
     """The rows of holes in which no bolt and no dowel of the file runs."""
     aside = {bolt.part for bolt in fasteners.meshed} | {*fasteners.washers}
-    drawn = {side for bolt in fasteners.drawn for side in bolt.holes}
+    drawn = {side for bolt in fasteners.drawn if bolt.drawn for side in bolt.drawn.holes}
     left = [bore for bore in bores(facts) if bore.part not in aside and drawn.isdisjoint(bore.sides)]
     found = rows(left, reach=0.01 * facts.size)
     return [stack for stack in found if not any(fasteners.shanks & bore.sides for bore in stack.bores)]

@@ -12,9 +12,9 @@ from faying.decks.raw import Pretension
 from faying.fe.mesh import Mesh
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.mesh_facts import mesh_facts
+from faying.setup.bolt_proposal import BoltProposal, to_nanometres
 from faying.setup.face_names import FaceNames
-from faying.setup.fasteners import to_nanometres
-from faying.setup.proposal import BoltProposal, Proposal, named_joints, snapped, touching
+from faying.setup.proposal import Proposal, named_joints, snapped, touching
 from faying.typing import Array
 
 ALONG = 0.9  # cosine between the axis of a bolt and the normal of its seats
@@ -113,6 +113,10 @@ def _bolt(
     force = section.force if section.force is not None and section.force > 0 else None
     pulled = "" if section.force is None else f", force {section.force:.9g} in the unit of the file"
     return BoltProposal(
+        axis=axis,
+        parts=(),
+        head=(head,),
+        end=(nut,),
         name=name,
         faces=(head.name, nut.name),
         size=size,

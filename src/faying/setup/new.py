@@ -16,11 +16,12 @@ from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
 from faying.misuse import checked_call
 from faying.setup.bolt_names import grouped
+from faying.setup.bolt_proposal import GRADE, BoltProposal
 from faying.setup.edit import written as quoted
 from faying.setup.faces import faces
 from faying.setup.found_dowels import DowelProposal
 from faying.setup.mesh_proposal import propose_mesh
-from faying.setup.proposal import GRADE, BoltProposal, Proposal, propose
+from faying.setup.proposal import Proposal, propose
 from faying.setup.template import SCHEMA, surface
 from faying.style import Summary
 from faying.text import cut
@@ -89,7 +90,7 @@ class Written(Summary):
                     "head": b.shape,
                     "engaged": {"unit": "m", "values": b.engaged},
                     "washers": 0 if b.drawn is None else len(b.drawn.washers),
-                    "drawn": None if b.drawn is None else [b.drawn.part, *b.drawn.rings],
+                    "drawn": None if b.drawn is None else list(b.drawn.names),
                     "preload": {"unit": "N", "values": b.preload},
                 }
                 for b in found.bolts
@@ -378,7 +379,7 @@ def _as_drawn(bolt: BoltProposal) -> list[str]:
         lines += [f'shank = "{show(bolt.drawn.shank, "m")}"'] if bolt.drawn.shank is not None else []
         kilos = [volume * (CATALOGUE[STEEL].density or 0.0) for volume in bolt.drawn.volumes]
         lines.append(f'head_mass = "{show(kilos[0], "kg", digits=6)}"  # drawn: what of its bodies is not the shank')
-        if bolt.drawn.tapped or bolt.drawn.has_nut:
+        if bolt.drawn.has_end:
             lines.append(f'nut_mass = "{show(kilos[1], "kg", digits=6)}"  # drawn: nut, or end of the screw')
     return lines
 

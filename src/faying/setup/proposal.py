@@ -1,29 +1,23 @@
 """A study proposed from CAD facts: joints where parts touch, bolts where holes line up, a size of mesh."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from math import floor, log10
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from faying.bolt.compliance import Head
-from faying.bolt.threads import STRENGTH_THICK, Fastener, Thread, is_graded
-from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
-from faying.bolt.vdi2230 import greatest_preload
 from faying.errors import InputError
 from faying.geometry.face_facts import GeometryFacts, PartFacts, TouchingFaces, part_distance
 from faying.geometry.selectors import TOUCHING, Selector
 from faying.memory import available
-from faying.setup.drawn_bolts import DrawnBolt
+from faying.setup.bolt_proposal import BoltProposal, rounded
 from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import find_fasteners, quoted
-from faying.setup.found_bolts import FoundBolt, LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
+from faying.setup.found_bolts import LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
 from faying.setup.found_dowels import DowelProposal, found_dowels
 from faying.units import show
 
-GRADE = "8.8"  # of the bolts
 ROOM = 0.7  # of the free memory that a proposed run takes, whose unknowns are an estimate
 ACROSS = 2  # elements across the thinnest part
 MAX_UNKNOWNS = 300_000  # unknowns beyond which the mesh is proposed coarser
@@ -38,54 +32,6 @@ class JointProposal:
     faces: tuple[str, str]
     gap: float
     area: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class BoltProposal:
-    """A bolt through a row of holes, or a part that is a bolt.
-
-    Args:
-        name: what tables call it.
-        faces: names of the seats; of a meshed bolt, of its faces under head and nut.
-        size: nominal diameter [mm]; None where it is not known.
-        at: point on the axis [m]; None where a tapped hole says it.
-        ring: inner and outer diameter of the seat [m].
-        part: the part that it is, if it is one.
-        shape: of the head.
-        engaged: length in the thread [m]; None where the depth of its hole says it.
-        drawn: the bodies of the file that it stands for, if it does.
-        force: what a mesh file pulls it with, as the file writes it; None where it gives none.
-        remark: where size and ring come from.
-    """
-
-    name: str
-    faces: tuple[str, str]
-    size: float | None = None
-    at: tuple[float, float, float] | None = None
-    ring: tuple[float, float] | None = None
-    part: str | None = None
-    shape: Head = "hexagon"
-    engaged: float | None = None
-    drawn: DrawnBolt | None = None
-    force: float | None = None
-    remark: str = ""
-
-    @property
-    def preload(self) -> float | None:
-        """The greatest [N] that the bolt sheet accepts of class 8.8, three digits; None where the size is not known.
-
-        Above M39, where ISO 898-1 ends, with the same strength.
-        """
-        if self.size is None:
-            return None
-        thread = Thread.coarse(self.size * 1e-3)
-        strength = Fastener(thread=thread, grade=GRADE).yield_stress if self.graded else STRENGTH_THICK[1]
-        return rounded(greatest_preload(thread, strength, scatter=TIGHTENING[DEFAULT_WAY].scatter), 3, up=False)
-
-    @property
-    def graded(self) -> bool:
-        """Whether ISO 898-1 has strengths for its thread."""
-        return self.size is not None and is_graded(Thread.coarse(self.size * 1e-3))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,7 +114,14 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         remarks.append("no bolt was found: fill in [[bolt]] by hand before you run the study")
     size, words = mesh_size(facts, {*(bolt.part for bolt in bolts), *fasteners.washers})
     remarks.append(words)
-    named_bolts = tuple(_named(bolt, k, names) for k, bolt in enumerate(bolts, 1))
+    named_bolts = tuple(
+        replace(
+            bolt,
+            name=f"bolt {k}",
+            faces=(names.of_several(bolt.head, bolt.words[0]), names.of_several(bolt.end, bolt.words[1])),
+        )
+        for k, bolt in enumerate(bolts, 1)
+    )
     dowels = found_dowels(facts, fasteners, names)
     return Proposal(
         facts=facts,
@@ -196,21 +149,6 @@ def named_joints(
     return tuple(joints)
 
 
-def _named(bolt: FoundBolt, number: int, names: FaceNames) -> BoltProposal:
-    return BoltProposal(
-        name=f"bolt {number}",
-        faces=(names.of_several(bolt.head, bolt.words[0]), names.of_several(bolt.end, bolt.words[1])),
-        size=bolt.size,
-        at=bolt.at,
-        ring=bolt.ring,
-        part=bolt.part,
-        shape=bolt.shape,
-        engaged=bolt.engaged,
-        drawn=bolt.drawn,
-        remark=bolt.remark,
-    )
-
-
 def snapped(facts: GeometryFacts, contacts: Sequence[TouchingFaces]) -> tuple[float, list[str]]:
     """The gap [m] up to which faces count as touching, 0 where all touch; and what there is to say of it."""
     widest = max((abs(contact.gap) for contact in contacts), default=0.0)
@@ -218,13 +156,6 @@ def snapped(facts: GeometryFacts, contacts: Sequence[TouchingFaces]) -> tuple[fl
         return 0.0, []
     words = f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)"
     return rounded(1.01 * widest, 2, up=True), [words]
-
-
-def rounded(value: float, digits: int, *, up: bool | None = None) -> float:
-    """A value to so many digits: the nearest, or the next above or below."""
-    step: float = 10.0 ** (floor(log10(value)) - digits + 1)
-    count = round(value / step) if up is None else np.ceil(value / step) if up else np.floor(value / step)
-    return round(float(count) * step, 15)
 
 
 def touching(facts: GeometryFacts) -> list[TouchingFaces]:
@@ -246,7 +177,9 @@ def touching(facts: GeometryFacts) -> list[TouchingFaces]:
     return [*touching, *(one for one in near if one.gap <= least[frozenset(one.parts)] + close)]
 
 
-def _apart(facts: GeometryFacts, contacts: Sequence[TouchingFaces], bolts: Sequence[FoundBolt]) -> list[TouchingFaces]:
+def _apart(
+    facts: GeometryFacts, contacts: Sequence[TouchingFaces], bolts: Sequence[BoltProposal]
+) -> list[TouchingFaces]:
     """Faces that only nearly touch, of parts that no bolt clamps together and that other parts touch."""
     close = TOUCHING * facts.size
     touched = {part for one in contacts if abs(one.gap) <= close for part in one.parts}
