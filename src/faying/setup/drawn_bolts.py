@@ -163,7 +163,7 @@ def _bolt(facts: GeometryFacts, row: _Row) -> BoltProposal | None:
     inner = max(_inner(row, side) for side in ends)
     if inner >= outer:
         return None
-    at = (_depth(row, head) if cone is None else row.ends[0], _depth(row, end))
+    at = (_depth(row, head), _depth(row, end))
     engaged, length = None, at[1] - at[0]
     if tapped:
         mouth = row.spans[row.bores.index(row.last)][0]
@@ -248,7 +248,9 @@ def _inner(row: _Row, end: int) -> float:
 
 
 def _depth(row: _Row, faces: Sequence[FaceFacts]) -> float:
-    return float(row.line.about(np.array(faces[0].centre))[1][0])
+    """Depth [m] of the middle of faces that are pressed, where a bolt takes its seat to be."""
+    depths = row.line.about(np.array([face.centre for face in faces]))[1]
+    return float(np.average(depths, weights=[face.area for face in faces]))
 
 
 def _plain(row: _Row, seat_at: float, thread_at: float) -> float | None:
