@@ -185,12 +185,12 @@ def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> BoltProposal | 
 def _washer(size: float) -> float:
     """Outer diameter [m] of the plain washer of a size [mm] (ISO 7089)."""
     washer = metric(size).washer
-    return 1e-3 * (size if washer is None else washer[1])
+    return round(1e-3 * (size if washer is None else washer[1]), 9)
 
 
 def _socket(size: float) -> float:
     """Diameter [m] of the head of the cap screw of a size [mm] (ISO 4762)."""
-    return 1e-3 * (metric(size).socket or size)
+    return round(1e-3 * (metric(size).socket or size), 9)
 
 
 def _shape(size: float, outer: float) -> Head:
