@@ -8,7 +8,8 @@ import pytest
 import faying
 from faying.bolt.bolt import Bolt, Washer
 from faying.bolt.compliance import bolt_sections
-from faying.bolt.threads import COARSE, Fastener, Thread
+from faying.bolt.standards import METRIC
+from faying.bolt.threads import Fastener, Thread
 from tests.helpers.plates import stacked
 
 E = 210e9
@@ -103,13 +104,14 @@ def test_diameters_of_threads():
 
 
 def test_diameters_between_the_sizes():
-    for size, pitch in COARSE.items():
-        assert Thread.near(size * 1e-3).pitch == pytest.approx(pitch * 1e-3, rel=1e-12)
+    for size, one in METRIC.items():
+        assert Thread.near(size * 1e-3).pitch == pytest.approx(one.pitch * 1e-3, rel=1e-12)
         assert Thread.near(size * 1e-3).is_coarse
     nine = Thread.near(9e-3)
     assert nine.pitch == pytest.approx(1.375e-3)
     assert not nine.is_coarse
-    assert Thread.near(2e-3).pitch == pytest.approx(2e-3 / 6)
+    assert Thread.near(2e-3).pitch == pytest.approx(0.4e-3)  # ISO 261
+    assert Thread.near(1.2e-3).pitch == pytest.approx(1.2e-3 * 0.35 / 1.6)
     assert Thread.near(42e-3).pitch == pytest.approx(4.5e-3)
     assert Thread.near(100e-3).pitch == pytest.approx(6e-3)
     with pytest.raises(faying.InputError, match="M1 to M300"):

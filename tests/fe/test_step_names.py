@@ -207,9 +207,68 @@ def test_equal_names_are_numbered_with_a_note(tmp_path):
     assert "'plate' is plate_1, plate_2" in note.text
 
 
-def test_solids_that_are_in_no_assembly_are_not_lost_without_a_word(tmp_path):
-    with pytest.raises(faying.ReadError, match="2 solids, but the CAD kernel reads 1: .* export them as one"):
-        mesh_step(assembly(tmp_path, ("a", "a"), ("b", "b"), loose=True), size=8e-3)
+def test_solids_that_are_in_no_assembly_are_all_read(tmp_path):
+    mesh = mesh_step(assembly(tmp_path, ("a", "a"), ("b", "b"), loose=True), size=8e-3)
+    assert sorted(mesh.parts) == ["a", "b"]
+
+
+def outside(master):
+    """Move the shapes of an assembly into its files one-0.step, one-1.step, to which it refers then."""
+    text = master.read_text()
+    parts = [int(one) for one in re.findall(r"#(\d+)\s*=\s*PRODUCT_DEFINITION\(", text) if one != "990004"]
+    text = re.sub(r"ADVANCED_BREP_SHAPE_REPRESENTATION\('',\s*\((#\d+),#\d+\)", r"SHAPE_REPRESENTATION('',(\1)", text)
+    text = re.sub(r"#\d+\s*=\s*MANIFOLD_SOLID_BREP\([^;]*;", "", text)
+    lines = ["#980001=APPLICATION_CONTEXT('');", "#980002=PRODUCT_CONTEXT('',#980001,'');"]
+    lines.append("#980003=PRODUCT_DEFINITION_CONTEXT('digital document definition',#980001,'');")
+    for k, definition in enumerate(parts):
+        n, name = 970_000 + 100 * k, f"one-{k}.step"
+        lines += [
+            f"#{n}=DOCUMENT_FILE('{name}','',$,#{n + 1},'',$);",
+            f"#{n + 1}=DOCUMENT_TYPE('');",
+            f"#{n + 2}=PRODUCT('{n}','{name}-Doc','',(#980002));",
+            f"#{n + 3}=PRODUCT_DEFINITION_FORMATION('1','',#{n + 2});",
+            f"#{n + 4}=PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS('1','',#{n + 3},#980003,(#{n}));",
+            f"#{n + 5}=DOCUMENT('','',$,#{n + 6});",
+            f"#{n + 6}=DOCUMENT_TYPE('configuration controlled document version');",
+            f"#{n + 7}=DOCUMENT_PRODUCT_EQUIVALENCE('equivalence',$,#{n + 5},#{n + 3});",
+            f"#{n + 8}=APPLIED_DOCUMENT_REFERENCE(#{n + 5},'',(#{definition}));",
+            f"#{n + 9}=OBJECT_ROLE('mandatory',$);",
+            f"#{n + 10}=ROLE_ASSOCIATION(#{n + 9},#{n + 8});",
+            f"#{n + 11}=IDENTIFICATION_ROLE('external document id and location',$);",
+            f"#{n + 12}=EXTERNAL_SOURCE(IDENTIFIER('{name}'));",
+            f"#{n + 13}=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('{name}',#{n + 11},#{n + 12},(#{n}));",
+            f"#{n + 14}=REPRESENTATION_CONTEXT('','document parameters');",
+            f"#{n + 15}=DESCRIPTIVE_REPRESENTATION_ITEM('data format','STEP AP214');",
+            f"#{n + 16}=REPRESENTATION('document format',(#{n + 15}),#{n + 14});",
+            f"#{n + 17}=PROPERTY_DEFINITION('document property','',#{n});",
+            f"#{n + 18}=PROPERTY_DEFINITION_REPRESENTATION(#{n + 17},#{n + 16});",
+        ]
+    master.write_text(text.replace("ENDSEC;\nEND-ISO", "\n".join([*lines, ""]) + "ENDSEC;\nEND-ISO"))
+    return master
+
+
+def test_parts_in_files_of_their_own_are_read_with_the_assembly(tmp_path):
+    path = outside(assembly(tmp_path, ("lower", ""), ("upper", "")))
+    held = read_parts(path)
+    assert held.names == ["lower", "upper"]
+    assert [solid.mass for solid in held.solids] == pytest.approx([4000, 4000])
+    assert [solid.center.z for solid in held.solids] == pytest.approx([5, 15])
+
+
+def test_a_part_that_its_file_lacks_is_named(tmp_path):
+    path = outside(assembly(tmp_path, ("lower", ""), ("upper", "")))
+    (tmp_path / "one-1.step").unlink()
+    with pytest.raises(faying.ReadError, match="refers to one-1.step for parts and holds no solid of its own; put the"):
+        read_parts(path)
+
+
+def test_a_step_file_without_shapes_is_said_to_have_no_solids(tmp_path):
+    path = tmp_path / "empty.step"
+    path.write_text(
+        assembly(tmp_path, ("a", "a")).read_text().partition("DATA;")[0] + "DATA;\nENDSEC;\nEND-ISO-10303-21;\n"
+    )
+    with pytest.raises(faying.ReadError, match="has no solids; export solids"):
+        read_parts(path)
 
 
 @pytest.mark.parametrize(

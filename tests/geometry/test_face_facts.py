@@ -102,7 +102,19 @@ def test_a_shaft_in_a_hole_is_a_contact_with_its_clearance(tmp_path):
         facts = read_facts(written(tmp_path / "pin.step", plate, pin))
         (contact,) = facts.contacts
         assert contact.gap == pytest.approx(gap, abs=1e-9)
-        assert contact.area == pytest.approx(2 * np.pi * 4e-3 * 10e-3, rel=0.02)  # by chords
+        assert contact.area == pytest.approx(2 * np.pi * 4e-3 * 10e-3, rel=1e-6)  # that of the hole
+
+
+def test_a_round_contact_has_its_area_and_a_slanted_cylinder_its_extent(tmp_path):
+    """Not those of chords: a ring from 5 to 10 mm; x of a cylinder of radius r and length l about (1, 1, 0)."""
+    from netgen.occ import Cylinder, Dir, Pnt, Z
+
+    ring = Cylinder(Pnt(0, 0, 10), Z, r=10, h=5) - Cylinder(Pnt(0, 0, 10), Z, r=5, h=5)
+    slanted = Cylinder(Pnt(50, 0, 5), Dir(1, 1, 0), r=5, h=20)
+    facts = read_facts(written(tmp_path / "r.step", box((-20, -20, 0), (20, 20, 10)), ring, slanted))
+    assert facts.contacts[0].area == pytest.approx(np.pi * (10**2 - 5**2) * 1e-6, rel=1e-9)
+    low, high = facts.parts[-1].low[0], facts.parts[-1].high[0]
+    assert (low, high) == pytest.approx((50e-3 - 5e-3 / 2**0.5, 50e-3 + 25e-3 / 2**0.5), abs=2e-9)
 
 
 def test_parts_far_apart(tmp_path):

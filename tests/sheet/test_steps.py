@@ -5,6 +5,7 @@ from math import inf, pi, sqrt, tan
 import pytest
 
 from faying.bolt.threads import PROOF, STRENGTH, Fastener, Thread
+from faying.bolt.vdi2230 import greatest_preload
 from faying.sheet.rows import Quantity, Step, evaluate
 from faying.sheet.steps import endurance, engagement, reduced_stress, steps, thread_torque, working_stress
 
@@ -32,6 +33,9 @@ def test_stress_and_torque_of_tightening_are_those_of_the_guidelines_table(size,
     d_0 = (thread.pitch_diameter + thread.minor_diameter) / 2
     shank = thread_torque(force * 1e3, thread.pitch, thread.pitch_diameter, mu)
     assert reduced_stress(force * 1e3, d_0, shank) == pytest.approx(0.9 * bolt.yield_stress, rel=0.005)
+    assert greatest_preload(thread, bolt.yield_stress, scatter=0.28, friction=mu) == pytest.approx(
+        force * 1e3 / 1.28, rel=0.005
+    )
     whole = shank + force * 1e3 * 1.3 * thread.diameter * mu / 2
     assert whole == pytest.approx(torque, rel=0.026)
 

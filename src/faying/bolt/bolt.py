@@ -480,8 +480,14 @@ class BoltPlace:
 
 
 def _meet(one: BoltPlace, other: BoltPlace) -> bool:
-    """Whether two bolts run through one place: parallel, on a common face, closer than their shanks are thick."""
+    """Whether two bolts run through one place: parallel, on a common face, closer than their shanks are thick.
+
+    Not where two screws end in one thread from either side, one before the other.
+    """
     arm = other.point - one.point
+    screwed = one.thread is not None and other.thread is not None
+    if screwed and ((other.seats - one.point) @ one.axis).min() > one.length * (1 - 1e-6):
+        return False
     apart = float(np.linalg.norm(arm - (arm @ one.axis) * one.axis))
     thick = ((one.bolt.diameter or 0.0) + (other.bolt.diameter or 0.0)) / 2 or 1e-3 * one.length
     parallel = abs(float(one.axis @ other.axis)) > 0.9

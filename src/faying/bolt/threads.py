@@ -5,54 +5,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import isclose, pi
 
+from faying.bolt.standards import METRIC
 from faying.errors import InputError
 from faying.units import show
 
-# pitch [mm] of the coarse thread of each nominal diameter [mm] (ISO 261)
-COARSE = {
-    3: 0.5,
-    4: 0.7,
-    5: 0.8,
-    6: 1.0,
-    7: 1.0,
-    8: 1.25,
-    10: 1.5,
-    12: 1.75,
-    14: 2.0,
-    16: 2.0,
-    18: 2.5,
-    20: 2.5,
-    22: 2.5,
-    24: 3.0,
-    27: 3.0,
-    30: 3.5,
-    33: 3.5,
-    36: 4.0,
-    39: 4.0,
-}
-# the same beyond the property classes of ISO 898-1; wider threads have the last pitch
-LARGE = {42: 4.5, 45: 4.5, 48: 5.0, 52: 5.0, 56: 5.5, 60: 5.5, 64: 6.0, 68: 6.0}
-# diameters [mm] of clearance holes, fine, medium and coarse, by nominal diameter [mm] (ISO 273)
-CLEARANCE_HOLES = {
-    3: (3.2, 3.4, 3.6),
-    4: (4.3, 4.5, 4.8),
-    5: (5.3, 5.5, 5.8),
-    6: (6.4, 6.6, 7.0),
-    8: (8.4, 9.0, 10.0),
-    10: (10.5, 11.0, 12.0),
-    12: (13.0, 13.5, 14.5),
-    14: (15.0, 15.5, 16.5),
-    16: (17.0, 17.5, 18.5),
-    18: (19.0, 20.0, 21.0),
-    20: (21.0, 22.0, 24.0),
-    22: (23.0, 24.0, 26.0),
-    24: (25.0, 26.0, 28.0),
-}
-# outer diameters [mm] of plain washers (ISO 7089) and of heads of cap screws (ISO 4762), by nominal diameter [mm]
-WASHERS = {3: 7, 4: 9, 5: 10, 6: 12, 8: 16, 10: 20, 12: 24, 14: 28, 16: 30, 18: 34, 20: 37, 22: 39, 24: 44}
-HEADS = {3: 5.5, 4: 7, 5: 8.5, 6: 10, 8: 13, 10: 16, 12: 18, 14: 21, 16: 24, 18: 27, 20: 30, 22: 33, 24: 36}
-# diameters [mm] of parallel pins (ISO 2338)
-PINS = (3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30)
 # stress under proof load [Pa] of each property class (ISO 898-1:2013, Table 3)
 PROOF = {
     "4.6": 225e6,
@@ -120,25 +76,29 @@ class Thread:
 
     @classmethod
     def coarse(cls, diameter: float) -> "Thread":
-        """Return the coarse thread of a nominal diameter [m]. Raises InputError where there is none."""
-        for size, pitch in COARSE.items():
+        """Return the coarse thread of a nominal diameter [m]; above M68 that of 6 mm, the coarsest pitch of ISO 261.
+
+        Raises:
+            InputError: There is none.
+        """
+        for size, one in METRIC.items():
             if isclose(1e3 * diameter, size, rel_tol=1e-9):
-                return cls(diameter=diameter, pitch=pitch * 1e-3)
+                return cls(diameter=diameter, pitch=one.pitch * 1e-3)
         raise InputError(
             f"no coarse thread has a diameter of {show(diameter, 'm')}; give one of "
-            f'{", ".join(f"M{size}" for size in COARSE)}; give thread = "M8x1" with its pitch'
+            f'{", ".join(f"M{size:g}" for size in METRIC)}; give thread = "M8x1" with its pitch'
         )
 
     @classmethod
     def near(cls, diameter: float) -> "Thread":
         """Return the coarse thread of a diameter [m], with a pitch between those of the sizes about it.
 
-        Below M3 the ratio of pitch to diameter is that of M3; above M68 the pitch is 6 mm.
+        Below M1.6 the ratio of pitch to diameter is that of M1.6; above M68 the pitch is 6 mm.
 
         Raises:
             InputError: The diameter is none of a metric thread, 1 mm to 300 mm.
         """
-        size, pitches = 1e3 * diameter, COARSE | LARGE
+        size, pitches = 1e3 * diameter, {one.size: one.pitch for one in METRIC.values()}
         sizes = sorted(pitches)
         if size <= sizes[0]:
             return cls(diameter=diameter, pitch=diameter * pitches[sizes[0]] / sizes[0])
@@ -152,8 +112,8 @@ class Thread:
     def is_coarse(self) -> bool:
         """Whether this is a coarse thread of ISO 261."""
         return any(
-            isclose(1e3 * self.diameter, size, rel_tol=1e-9) and isclose(1e3 * self.pitch, pitch, rel_tol=1e-9)
-            for size, pitch in (COARSE | LARGE).items()
+            isclose(1e3 * self.diameter, one.size, rel_tol=1e-9) and isclose(1e3 * self.pitch, one.pitch, rel_tol=1e-9)
+            for one in METRIC.values()
         )
 
     @property
@@ -177,29 +137,9 @@ class Thread:
         return pi / 4 * ((self.pitch_diameter + self.minor_diameter) / 2) ** 2
 
 
-NOMINAL = 0.05  # mm: a hole wider by no more is drawn as wide as the thread, whatever the last digit of its radius
-
-
-def size_for_hole(diameter: float) -> int | None:
-    """Return the nominal diameter [mm] of the bolt that a clearance hole [m] is made for; None where there is none.
-
-    The size whose medium hole is nearest, the greater of two alike, if the hole is wider than the bolt by more than
-    0.05 mm and not wider than its coarse hole. What is narrower is as wide as the thread: see `is_tapped`.
-
-    Source:
-        ISO 273:1979.
-    """
-    hole = 1e3 * diameter
-    fitting = [size for size, (_, _, coarse) in CLEARANCE_HOLES.items() if size + NOMINAL < hole <= coarse * (1 + 1e-6)]
-    return min(fitting, key=lambda size: (round(abs(CLEARANCE_HOLES[size][1] - hole), 6), -size), default=None)
-
-
-def is_tapped(diameter: float, size: int) -> bool:
-    """Whether a hole [m] may be that of the coarse thread of a size [mm].
-
-    CAD models show a thread by its tap drill, by its core, or by its nominal diameter.
-    """
-    return bool(size - 1.3 * COARSE[size] <= 1e3 * diameter <= size + NOMINAL)
+def is_graded(thread: Thread) -> bool:
+    """Whether ISO 898-1 has strengths for a thread."""
+    return MIN_DIAMETER <= thread.diameter <= MAX_DIAMETER
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,7 +165,7 @@ class Fastener:
             raise InputError(
                 f'grade "{self.grade}" is not a property class of ISO 898-1; give one of {", ".join(PROOF)}'
             )
-        if not MIN_DIAMETER <= self.thread.diameter <= MAX_DIAMETER:
+        if not is_graded(self.thread):
             raise InputError(
                 f"thread {self.thread}: the property classes of ISO 898-1 cover M1.6 to M39; leave out grade"
             )

@@ -42,6 +42,8 @@ TIGHTENING = {
     "strain gauge": Tightening(0.01, _HANDBOOK),
 }
 
+DEFAULT_WAY = "torque wrench, friction estimated"  # of tightening, where nothing says it
+
 
 def tightening(name: object, where: str) -> Tightening:
     """The way of tightening of a name. Raises InputError that lists those known."""

@@ -1,9 +1,10 @@
-"""Numbers of the guideline VDI 2230: compliance of the clamped parts by its deformation cone, and embedding."""
+"""Numbers of the guideline VDI 2230: the deformation cone of the clamped parts, embedding, stress at assembly."""
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import atanh, log, pi
+from math import atanh, log, pi, sqrt
 
+from faying.bolt.threads import Thread
 from faying.errors import InputError
 
 # guide values of embedding [m] under axial load, from a roughness height Rz [m]: in the thread, under head or nut each,
@@ -13,6 +14,8 @@ EMBEDDING = {
     10e-6: (3.0e-6, 3.0e-6, 2.0e-6),
     40e-6: (3.0e-6, 4.0e-6, 3.0e-6),
 }
+DEFAULT_FRICTION = 0.12  # the middle of class B, 0.08 to 0.16: metal, oiled or coated (VDI 2230 Part 1:2015, Table A5)
+TIGHTENED = 0.9  # of the yield stress that tightening may use (VDI 2230 Part 1:2015, R7)
 ROUGHEST = 160e-6  # m: the table ends there
 
 
@@ -145,3 +148,32 @@ def embedding_guide(Rz: float) -> tuple[float, float, float]:
     if not 0 <= Rz < ROUGHEST:
         raise InputError(f"Rz = {Rz:g} m: the guideline's values of embedding end at {ROUGHEST:g} m")
     return EMBEDDING[max(limit for limit in EMBEDDING if limit <= Rz)]
+
+
+def thread_torque(F: float, P: float, d_2: float, mu_G: float) -> float:
+    """Torque [N m] in the shank while a bolt is tightened to F [N]."""
+    return F * (0.16 * P + 0.58 * d_2 * mu_G)
+
+
+def reduced_stress(F: float, d_0: float, torque: float) -> float:
+    """Von Mises stress [Pa] at assembly, the shear stress even over the section of diameter d_0 [m]."""
+    return sqrt((F / (pi / 4 * d_0**2)) ** 2 + 3 * (torque / (pi / 12 * d_0**3)) ** 2)
+
+
+def greatest_preload(
+    thread: Thread, yield_stress: float, *, scatter: float, friction: float = DEFAULT_FRICTION
+) -> float:
+    """Return the preload [N] at which the stress at assembly is 90 % of the yield stress where it scatters upwards.
+
+    Args:
+        thread: The thread.
+        yield_stress: Of the bolt [Pa].
+        scatter: Of the preload [-]: the greatest is (1 + scatter) times it.
+        friction: Coefficient in the thread [-].
+
+    Source:
+        VDI 2230 Part 1:2015, R7.
+    """
+    torque = thread_torque(1.0, thread.pitch, thread.pitch_diameter, friction)
+    stress = reduced_stress(1.0, (thread.pitch_diameter + thread.minor_diameter) / 2, torque)  # of 1 N
+    return TIGHTENED * yield_stress / stress / (1 + scatter)

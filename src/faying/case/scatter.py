@@ -7,7 +7,7 @@ from typing import final
 
 import numpy as np
 
-from faying.bolt.tightening import TIGHTENING
+from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
 from faying.case.case import checked_mesh, surfaces_of
 from faying.case.law_range import of_joints
 from faying.case.waves import drawn_on
@@ -22,7 +22,6 @@ from faying.study.study import Study
 
 LEVELS = np.array([0.05, 0.5, 0.95])
 ENDS = LEVELS[[0, 2]]
-DEFAULT_WAY = "torque wrench, friction estimated"  # of tightening, where nothing says it
 TWO_SIGMA = 0.02275  # probability below two standard deviations
 SCORE = 1.6449  # standard deviations from the median to these ends
 OF_PARTS = ("E", "density")

@@ -1,7 +1,7 @@
 """Holes through parts, and rows of holes on one axis through several parts: where bolts go."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -11,6 +11,7 @@ from faying.typing import Array
 
 FULL_TURN = 0.95  # share of a turn from which the faces of a bore close
 AXIS_OFFSET = 0.2  # of the radius: axes that lie farther apart are two
+ROOM = 1.3  # hole diameters that a nut and a head take, 0.8 and 0.64 diameters of their bolt (ISO 4032, ISO 4014)
 LEVEL = 1e-6  # m: within which a plane begins where a bore ends
 
 
@@ -38,6 +39,11 @@ class Bore:
     faces: tuple[int, ...]
     slot: Array | None = None
 
+    @property
+    def sides(self) -> frozenset[tuple[str, int]]:
+        """Part and number of its faces."""
+        return frozenset((self.part, number) for number in self.faces)
+
     def at(self, depth: float) -> Array:
         """The point of the axis (3,) [m] at a depth [m]."""
         return np.asarray(self.point + (depth - self.point @ self.axis) * self.axis)
@@ -45,9 +51,17 @@ class Bore:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Stack:
-    """Bores of different parts on one axis, one behind the other, from low to high; in each part the narrowest."""
+    """Bores of different parts on one axis, from low to high; in each part the narrowest.
+
+    Where a part has several, as a tube has in its two walls, or a fork, they are one from the first to the last.
+    """
 
     bores: tuple[Bore, ...]
+
+    @property
+    def ends(self) -> tuple[Bore, Bore]:
+        """The bores that begin first and end last."""
+        return self.bores[0], max(self.bores, key=lambda bore: bore.high)
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -63,7 +77,7 @@ class Stack:
     def middle(self) -> Array:
         """The point of the axis (3,) [m] in the middle of the stack: on the axis of a round hole, if there is one."""
         round_ones = [bore for bore in self.bores if bore.slot is None]
-        return (round_ones or self.bores)[0].at((self.bores[0].low + self.bores[-1].high) / 2)
+        return (round_ones or self.bores)[0].at((self.ends[0].low + self.ends[1].high) / 2)
 
 
 def bores(facts: GeometryFacts) -> list[Bore]:
@@ -146,21 +160,36 @@ def rows(found: Sequence[Bore], *, reach: float) -> list[Stack]:
         first = left[0]
         line = [bore for bore in left if _one_axis(first, bore)]
         left = [bore for bore in left if bore not in line]
-        narrow: dict[str, Bore] = {}
-        for bore in line:
-            if bore.part not in narrow or bore.radius < narrow[bore.part].radius:
-                narrow[bore.part] = bore
+        narrow = [_narrowest([bore for bore in line if bore.part == part]) for part in {bore.part: 0 for bore in line}]
         row: list[Bore] = []
-        for bore in sorted(narrow.values(), key=lambda bore: bore.low):
-            before = [one for one in line if row and one.part == row[-1].part]
-            here = [one for one in line if one.part == bore.part]
-            far = max(reach, 4 * bore.radius)
-            if row and min(one.low for one in here) - max(one.high for one in before) > far:
-                out.append(Stack(bores=tuple(row)))
+        for bore in sorted(narrow, key=lambda bore: bore.low):
+            before = [one.high for one in line if one.part in [some.part for some in row]]
+            gap = min(one.low for one in line if one.part == bore.part) - max(before, default=np.inf)
+            if gap > max(reach, 4 * bore.radius):
+                out += _apart(row)
                 row = []
             row.append(bore)
-        out.append(Stack(bores=tuple(row)))
+        out += _apart(row)
     return out
+
+
+def _narrowest(alike: Sequence[Bore]) -> Bore:
+    """The narrowest of the bores of a part on one axis; several of one radius are one from the first to the last."""
+    least = min(bore.radius for bore in alike)
+    thin = [bore for bore in alike if bore.radius <= least * (1 + 1e-4)]
+    if len(thin) == 1:
+        return thin[0]
+    low, high = min(bore.low for bore in thin), max(bore.high for bore in thin)
+    return replace(thin[0], low=low, high=high, faces=tuple(number for bore in thin for number in bore.faces))
+
+
+def _apart(row: Sequence[Bore]) -> list[Stack]:
+    """A row in two where it has room for a nut and a head in the middle, and two parts or more on either side."""
+    for k in range(2, len(row) - 1):
+        gap = row[k].low - max(bore.high for bore in row[:k])
+        if gap > ROOM * 2 * row[k].radius:
+            return [*_apart(row[:k]), *_apart(row[k:])]
+    return [Stack(bores=tuple(row))]
 
 
 def seat(facts: GeometryFacts, bore: Bore, *, top: bool) -> FaceFacts | None:

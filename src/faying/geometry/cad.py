@@ -9,11 +9,15 @@ from typing import Any, TypeVar
 from faying.apart import Died, apart
 from faying.errors import InputError, ReadError
 from faying.file_kinds import STEP, kind_held
-from faying.geometry.products import Products, leaves, named_by_product, read_products
+from faying.geometry.products import Leaf, decoded, leaves, named_by_product, read_products
 from faying.notes import Note
+from faying.text import listed
 
 T = TypeVar("T")
 _SOLID = re.compile(r"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\s*\(")
+# entities that name the file of a part, and the name in them
+_OUTSIDE = re.compile(r"\b(?:DOCUMENT_FILE|APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT|EXTERNAL_SOURCE)\s*\([^;]*;")
+_FILE = re.compile(r"'((?:[^'\\/]|'')[^']*\.(?:stp|step|p21))'", re.IGNORECASE)
 
 NO_NAMES = ("", "NONE")  # what exporters write for want of a name
 # what OpenCASCADE links against; wheels do not bring them
@@ -67,11 +71,8 @@ def check_head(path: Path) -> None:
 
 
 def read_step(path: Path) -> Any:
-    """Return the OpenCASCADE shape of a STEP file, in the file's millimetres.
-
-    Raises ReadError for files that cannot be read, hold no solid, or solids that the kernel leaves out.
-    """
-    return _geometry(path).shape
+    """Return the OpenCASCADE shape of the solids of a STEP file, in millimetres. Raises ReadError as `read_parts`."""
+    return kernel().Compound(read_parts(path).solids)
 
 
 def write_step(path: Path, solids: Sequence[Any]) -> None:
@@ -89,23 +90,45 @@ def without_time(text: str) -> str:
     return re.sub(r"(STEP translator \S+) \d+", r"\1 1", text)
 
 
-def _geometry(path: Path) -> Any:
+def files_of(path: Path) -> tuple[Path, ...]:
+    """A STEP file and those that it refers to for the shapes of its parts, and so on.
+
+    Raises ReadError, with the name, where one of them is not there.
+    """
+    found = [path]
+    for file in found:
+        text = file.read_text(encoding="latin-1")
+        named = {decoded(name) for entity in _OUTSIDE.findall(text) for name in _FILE.findall(entity)}
+        found += [other for name in sorted(named) if (other := file.parent / name) not in found]
+        missing = [str(other.relative_to(path.parent)) for other in found if not other.is_file()]
+        if missing:
+            solids = "" if _SOLID.search(text) else " and holds no solid of its own"
+            raise ReadError(
+                f"{file} refers to {listed(missing)} for parts{solids}; put the missing files where they are named, or "
+                "export the assembly as one file"
+            )
+    return tuple(found)
+
+
+def _leaves(path: Path) -> list[Leaf]:
+    """The placed shapes of a STEP file and of those that it refers to."""
     check_head(path)
-    occ = kernel()
+    texts = [file.read_text(encoding="latin-1") for file in files_of(path)]
+    geometry, written = kernel().OCCGeometry, sum(len(_SOLID.findall(text)) for text in texts)
     try:
-        geometry = occ.OCCGeometry(str(path))
-        shape = geometry.shape
+        found = leaves(geometry(str(path)).GetAssemblyTree(), read_products(texts[0]))
     except Exception as fault:
-        raise ReadError(f"{path} cannot be read as STEP ({fault}); export it again from the CAD program") from None
-    found, written = len(list(shape.solids)), len(_SOLID.findall(path.read_text(encoding="latin-1")))
-    if not found:
-        raise ReadError(f"{path} has no solids; export solids, not surfaces")
-    if found < written:
+        if written:  # the kernel has many words for a file without any shape
+            raise ReadError(f"{path} cannot be read as STEP ({fault}); export it again from the CAD program") from None
+        found = []
+    read = sum(len(list(leaf.shape.solids)) for leaf in found)
+    if not read:
+        raise ReadError(f"{path} has no solids; export solids, not surfaces or a mesh")
+    if read < written:
         raise ReadError(
-            f"{path} has {written} solids, but the CAD kernel reads {found}: they are not in one assembly; "
-            "export them as one"
+            f"{path} has {written} solids, of which the CAD kernel reads {read}; export it again, as one assembly"
         )
-    return geometry
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,13 +136,11 @@ class CadParts:
     """The solids of a STEP file.
 
     Args:
-        shape: all of the file, as the kernel read it [mm].
-        solids: one by one, in the kernel's order; their faces count from 1 in the order of `solid.faces`.
+        solids: one by one [mm], in the kernel's order; their faces count from 1 in the order of `solid.faces`.
         names: a name of its own for each.
         notes: where names are missing or given several times.
     """
 
-    shape: Any
     solids: list[Any]
     names: list[str]
     notes: tuple[Note, ...]
@@ -141,21 +162,19 @@ class CadParts:
 def read_parts(path: Path) -> CadParts:
     """Read the solids of a STEP file with their names: of the solid, else of its product, else part1, part2.
 
-    Raises ReadError as `read_step`.
+    Raises ReadError for files that cannot be read, lack a file that they refer to, or hold no solid, and for solids
+    that the kernel leaves out.
     """
-    geometry = _geometry(path)
-    solids = list(geometry.shape.solids)
+    found = _leaves(path)
+    solids = [solid for leaf in found for solid in leaf.shape.solids]
     for thing in (*solids, *(face for solid in solids for face in solid.faces)):
         if (thing.name or "").strip().upper() in NO_NAMES:
             thing.name = ""
-    found = products(path)
-    tree = geometry.GetAssemblyTree() if hasattr(geometry, "GetAssemblyTree") else None  # netgen 6.2.2608 and later
-    given = [""] * len(solids) if tree is None else named_by_product(solids, leaves(tree, found))
-    given = [solid.name or product for solid, product in zip(solids, given, strict=True)]
+    given = [solid.name or product for solid, product in zip(solids, named_by_product(solids, found), strict=True)]
     names, notes = own_names(given, path.name)
-    listed = [name for name in dict.fromkeys(found.names.values()) if name.strip()]
-    notes += (*_nameless(path, solids, given, listed), *_drop_shared(path, solids, names))
-    return CadParts(shape=geometry.shape, solids=solids, names=names, notes=notes)
+    products = [name for name in dict.fromkeys(leaf.product for leaf in found) if name.strip()]
+    notes += (*_nameless(path, solids, given, products), *_drop_shared(path, solids, names))
+    return CadParts(solids=solids, names=names, notes=notes)
 
 
 def _drop_shared(path: Path, solids: Sequence[Any], names: Sequence[str]) -> tuple[Note, ...]:
@@ -174,11 +193,6 @@ def _drop_shared(path: Path, solids: Sequence[Any], names: Sequence[str]) -> tup
     listed = ", ".join(f"{name!r} ({', '.join(sorted(owners[name]))})" for name in shared)
     text = f"{path.name}: faces of several parts have one name, which names none of them then: {listed}"
     return (Note(code="shared-names", text=f"{text}; name them apart, or choose them by what they are"),)
-
-
-def products(path: Path) -> Products:
-    """The products of a STEP file, which the kernel does not hand on."""
-    return read_products(path.read_text(encoding="latin-1"))
 
 
 def own_names(given: Sequence[str], file: str) -> tuple[list[str], tuple[Note, ...]]:
@@ -201,7 +215,7 @@ def own_names(given: Sequence[str], file: str) -> tuple[list[str], tuple[Note, .
     return out, (Note(code="numbered-parts", text=text),)
 
 
-def _nameless(path: Path, solids: Sequence[Any], names: Sequence[str], listed: Sequence[str]) -> tuple[Note, ...]:
+def _nameless(path: Path, solids: Sequence[Any], names: Sequence[str], products: Sequence[str]) -> tuple[Note, ...]:
     """Where solids without a name lie."""
     where = [
         f"part{number} about ({', '.join(f'{getattr(solid.center, axis):.4g}' for axis in 'xyz')}) mm"
@@ -212,6 +226,6 @@ def _nameless(path: Path, solids: Sequence[Any], names: Sequence[str], listed: S
         return ()
     text = (
         f"{path.name} gives no names that tell its solids apart: {', '.join(where)} (products: "
-        f"{', '.join(listed) or 'none'}); name the bodies in the CAD program, or take these names"
+        f"{', '.join(products) or 'none'}); name the bodies in the CAD program, or take these names"
     )
     return (Note(code="nameless-parts", text=text),)

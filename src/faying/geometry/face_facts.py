@@ -193,7 +193,13 @@ class GeometryFacts(Summary):
 
     def triangles(self, face: FaceFacts) -> Array:
         """Triangles (t, 3, 3) [m] of a face."""
-        return np.asarray(self.corners[self.face_of == self.faces.index(face)])
+        return self._triangles[face.part, face.number]
+
+    @cached_property
+    def _triangles(self) -> dict[tuple[str, int], Array]:
+        order = np.argsort(self.face_of, kind="stable")
+        rows = np.split(order, np.cumsum(np.bincount(self.face_of, minlength=len(self.faces)))[:-1])
+        return {(face.part, face.number): self.corners[row] for face, row in zip(self.faces, rows, strict=True)}
 
     def without(self, parts: Container[str]) -> "GeometryFacts":
         """The same geometry with some parts left out."""
@@ -261,6 +267,7 @@ def facts_of(
     parts, corners, owner = [], [], []
     for solid, name in zip(solids, names, strict=True):
         solid_faces = list(solid.faces)
+        low, high = (1e-3 * np.array([*end]) for end in solid.bounding_box)  # before there are triangles, it is exact
         tris, normals, of = _triangles(solid)
         edges = [{hash(edge) for edge in face.edges} for face in solid_faces]
         for k, face in enumerate(solid_faces):
@@ -281,9 +288,10 @@ def facts_of(
             )
             corners.append(tris[mine])
             owner.append(np.full(np.count_nonzero(mine), len(faces) - 1))
-        low, high = _point(tris.min(axis=(0, 1))), _point(tris.max(axis=(0, 1)))
-        area = sum(1e-6 * face.mass for face in solid_faces)
-        parts.append(PartFacts(name=name, volume=1e-9 * solid.mass, area=area, low=low, high=high))
+        box = {"low": _point(np.round(low, 9)), "high": _point(np.round(high, 9))}  # the kernel's has a margin
+        parts.append(
+            PartFacts(name=name, volume=1e-9 * solid.mass, area=1e-6 * sum(f.mass for f in solid_faces), **box)
+        )
     places, face_of = np.concatenate(corners), np.concatenate(owner)
     distances = {label: _distances(label, part, at, solids, names) for label, (part, at) in points.items()}
     return GeometryFacts(
@@ -391,6 +399,8 @@ def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list
             if gap is None or abs(gap) > reach:
                 continue
             area = _facing_area(corners[rows[i]], corners[rows[j]], reach)
+            least, own = min((one, rows[i]), (two, rows[j]), key=lambda pair: pair[0].area)
+            area *= least.area / _area(corners[own])  # chords have less
             if area > 1e-6 * min(one.area, two.area):
                 out.append(
                     TouchingFaces(first=(one.part, one.number), second=(two.part, two.number), area=area, gap=gap)
@@ -424,6 +434,12 @@ def _facing_area(first: Array, second: Array, reach: float) -> float:
     rows = np.arange(len(points)).reshape(-1, 3)
     cut = overlap(points, (rows[: len(first)],), (rows[len(first) :],), search_distance=reach, degree=1)
     return float(cut.weights.sum())
+
+
+def _area(corners: Array) -> float:
+    """Area [m2] of triangles."""
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(np.linalg.norm(across, axis=1).sum() / 2)
 
 
 def shared_volumes(solids: Sequence[Any], names: Sequence[str]) -> list[str]:

@@ -18,7 +18,7 @@ from faying.fe.elements import KINDS
 from faying.fe.mesh import Mesh
 from faying.fe.solids import split_at_joints
 from faying.fe.straighten import straightened
-from faying.geometry.cad import CadParts, ask_kernel, check_head, kernel, read_parts
+from faying.geometry.cad import CadParts, ask_kernel, check_head, files_of, kernel, read_parts
 from faying.geometry.face_facts import facts_of, shared_volumes
 from faying.geometry.selectors import Selector, chosen, points_of
 from faying.memory import available
@@ -94,7 +94,8 @@ def mesh_step(
         return ask_kernel(path, _mesh_arrays, request)
 
     plain = asdict(request) | {"netgen": version("netgen-mesher"), "stored": STORED}
-    data = kept(made, cache, kind="mesh", key=json.dumps(plain, sort_keys=True), data=path.read_bytes())
+    content = b"".join(file.read_bytes() for file in files_of(path))
+    data = kept(made, cache, kind="mesh", key=json.dumps(plain, sort_keys=True), data=content)
     facts = json.loads(data["facts"].item())
     parts, owners = facts["parts"], facts["faces"]
     return Mesh(

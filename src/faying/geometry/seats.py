@@ -68,17 +68,25 @@ def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tup
     """
     outwards = bore.axis if top else -bore.axis
     plane, origin = across(outwards), bore.at(bore.high if top else bore.low)
-    arms = facts.corners - origin
-    flat, depth = arms @ plane, arms @ outwards
     far = FARTHEST * ring[1]
+    faces = [
+        face
+        for part in facts.parts
+        if part.name != bore.part and np.all((origin > np.array(part.low) - far) & (origin < np.array(part.high) + far))
+        for face in facts.by_part[part.name]
+    ]
+    if not faces:
+        return []
+    arms = np.concatenate([facts.triangles(face) for face in faces]) - origin
+    owner = np.repeat(np.arange(len(faces)), [len(facts.triangles(face)) for face in faces])
+    flat, depth = arms @ plane, arms @ outwards
     near = (depth.max(axis=1) > LEVEL) & (depth.min(axis=1) < far)
     near &= np.all((flat.min(axis=1) < ring[1] / 2) & (flat.max(axis=1) > -ring[1] / 2), axis=1)
-    near &= np.array([face.part != bore.part for face in facts.faces])[facts.face_of]
-    flat, depth, owner = flat[near], depth[near], facts.face_of[near]
+    flat, depth, owner = flat[near], depth[near], owner[near]
     levels = {
         k: float(depth[owner == k].mean())
         for k in np.unique(owner).tolist()
-        if facts.faces[k].normal is not None and np.array(facts.faces[k].normal) @ outwards > FACING
+        if faces[k].normal is not None and np.array(faces[k].normal) @ outwards > FACING
     }
     points = np.concatenate([circle(r) for r in np.linspace(ring[0] / 2, ring[1] / 2, RADII + 2)[1:-1]])
     over, deep = hits(flat, depth, points)
@@ -86,10 +94,9 @@ def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tup
     for level in sorted({round(level / LEVEL) * LEVEL for level in levels.values()}):
         if not 0 < level < far or np.any(way[0] & (way[1] > LEVEL) & (way[1] < level - LEVEL)):
             continue
-        faces = [k for k, one in levels.items() if abs(one - level) <= LEVEL]
-        covered = np.any(over & np.isin(owner, faces)[:, None] & (np.abs(deep - level) <= 2 * LEVEL), axis=0)
+        alike = [k for k, one in levels.items() if abs(one - level) <= LEVEL]
+        covered = np.any(over & np.isin(owner, alike)[:, None] & (np.abs(deep - level) <= 2 * LEVEL), axis=0)
         aside = np.linalg.norm(points[covered].mean(axis=0)) if np.any(covered) else np.inf
         if covered.mean() > COVERED and aside < BALANCED * ring[1] / 2:
-            touched = [k for k in faces if np.any(over[owner == k] & covered)]
-            return [facts.faces[k] for k in touched]
+            return [faces[k] for k in alike if np.any(over[owner == k] & covered)]
     return []

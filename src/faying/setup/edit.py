@@ -1,4 +1,4 @@
-"""One key of a study's text changed, every other line left as it is."""
+"""One key of a study's text changed, every other line left as it is; what a comment says of the old value goes."""
 
 import json
 import re
@@ -11,11 +11,15 @@ from faying.setup.lines import KeyPath, Statement, name_of, statements
 from faying.text import toml
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
+# comments by which `faying new` says where a value is from, or what follows from it
+_OF_VALUE = re.compile(r"[ \t]*#[ \t]*(?:ASSUMED|drawn|[\d.]+ [mc]?m2)\b[^\r\n]*|(?<=# largest element):[^\r\n]*")
 _BLANK = re.compile(r"[ \t]*\r?\n")
 
 
 def edited(text: str, path: KeyPath, value: Any) -> str:
-    """Return a TOML text with one value set, added or taken out; comments and all other lines stay as they are.
+    """Return a TOML text with one value set, added or taken out; all other lines stay as they are.
+
+    Comments stay, too, but for those by which `faying new` says where the value was from, such as "ASSUMED".
 
     Args:
         text: the study.
@@ -149,7 +153,8 @@ def _at(data: Any, path: KeyPath) -> Any:
 
 
 def _replaced(text: str, one: Statement, value: Any) -> str:
-    return text[: one.value] + written(value) + text[one.value_end :]
+    comment = _OF_VALUE.sub("", text[one.value_end : one.end], count=1)
+    return text[: one.value] + written(value) + comment + text[one.end :]
 
 
 def _with_key(text: str, every: list[Statement], path: KeyPath, value: Any) -> str:

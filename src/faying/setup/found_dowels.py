@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from faying.bolt.threads import PINS, is_tapped, size_for_hole
+from faying.bolt.standards import COMMON_PINS, is_tapped, size_for_hole
 from faying.geometry.bores import Bore, Stack, bores, rows, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
 from faying.setup.face_names import FaceNames
@@ -49,21 +49,28 @@ def found_dowels(facts: GeometryFacts, fasteners: Fasteners, names: FaceNames) -
                 "; it is hollow and counts as solid, too stiff and too heavy: take it out or soften it" * pin.hollow
             )
             add(walls.values(), remark, pin.ends)
-    solid = {bolt.part for bolt in fasteners.meshed}
-    for stack in rows([bore for bore in bores(facts) if bore.part not in solid], reach=0.01 * facts.size):
-        taken = any((bore.part, number) in fasteners.shanks for bore in stack.bores for number in bore.faces)
-        if not taken and takes_dowel(facts, stack):
+    for stack in free_rows(facts, fasteners):
+        if takes_dowel(facts, stack):
             wide = show(2 * stack.bores[0].radius, "m")
             walls_of = [[facts.face(bore.part, number) for number in bore.faces] for bore in stack.bores]
             add(walls_of, f"{wide} (ISO 2338), as long as its holes; take it out if there is none")
     return tuple(found)
 
 
+def free_rows(facts: GeometryFacts, fasteners: Fasteners) -> list[Stack]:
+    """The rows of holes in which no bolt and no dowel of the file runs."""
+    aside = {bolt.part for bolt in fasteners.meshed} | {*fasteners.washers}
+    drawn = {side for bolt in fasteners.drawn if bolt.drawn for side in bolt.drawn.holes}
+    left = [bore for bore in bores(facts) if bore.part not in aside and drawn.isdisjoint(bore.sides)]
+    found = rows(left, reach=0.01 * facts.size)
+    return [stack for stack in found if not any(fasteners.shanks & bore.sides for bore in stack.bores)]
+
+
 def takes_dowel(facts: GeometryFacts, stack: Stack) -> bool:
     """Whether a row of holes is one for a dowel: of one diameter of ISO 2338, blind or of no clearance size."""
     if len(stack.bores) < 2 or not like_dowel(stack):
         return False
-    low, high = stack.bores[0], stack.bores[-1]
+    low, high = stack.ends
     return size_of(stack) is None or None in (seat(facts, low, top=False), seat(facts, high, top=True))
 
 
@@ -71,10 +78,10 @@ def like_dowel(stack: Stack) -> bool:
     """Whether round holes have one diameter, which is that of a pin (ISO 2338)."""
     wide = [2e3 * bore.radius for bore in stack.bores]
     one = max(wide) - min(wide) <= ALIKE * wide[0] and all(bore.slot is None for bore in stack.bores)
-    return one and any(abs(wide[0] - pin) <= ALIKE * pin for pin in PINS)
+    return one and any(abs(wide[0] - pin) <= ALIKE * pin for pin in COMMON_PINS)
 
 
-def size_of(stack: Stack) -> tuple[int, Bore | None] | None:
+def size_of(stack: Stack) -> tuple[float, Bore | None] | None:
     """Nominal diameter [mm] of the bolt of a row of holes, and the hole that is its thread; None where none fits."""
     sizes = [size_for_hole(2 * bore.radius) for bore in stack.bores]
     ends = [(stack.bores[-1], sizes[:-1]), (stack.bores[0], sizes[1:])]

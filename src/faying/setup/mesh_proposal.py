@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.bolt.threads import WASHERS
+from faying.bolt.standards import nearest_size
 from faying.decks.meshfile import read_mesh, read_pretensions
 from faying.decks.raw import Pretension
 from faying.fe.mesh import Mesh
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.mesh_facts import mesh_facts
+from faying.setup.bolt_proposal import BoltProposal, to_nanometres
 from faying.setup.face_names import FaceNames
-from faying.setup.fasteners import to_nanometres
-from faying.setup.proposal import BoltProposal, Proposal, named_joints, snapped, touching
+from faying.setup.proposal import Proposal, named_joints, snapped, touching
 from faying.typing import Array
 
 ALONG = 0.9  # cosine between the axis of a bolt and the normal of its seats
@@ -113,6 +113,10 @@ def _bolt(
     force = section.force if section.force is not None and section.force > 0 else None
     pulled = "" if section.force is None else f", force {section.force:.9g} in the unit of the file"
     return BoltProposal(
+        axis=axis,
+        parts=(),
+        head=(head,),
+        end=(nut,),
         name=name,
         faces=(head.name, nut.name),
         size=size,
@@ -120,7 +124,7 @@ def _bolt(
         part=part,
         force=force,
         remark=f"{section.text}{pulled}: the part {part!r} is the bolt"
-        + (f", M{size} by the area of its section" if size else ""),
+        + (f", M{size:g} by the area of its section" if size else ""),
     )
 
 
@@ -132,11 +136,11 @@ def _axis(places: Array, section: Pretension) -> Array:
     return np.asarray(np.linalg.svd(places - places.mean(axis=0))[2][2])
 
 
-def _size(places: Array, axis: Array) -> int | None:
+def _size(places: Array, axis: Array) -> float | None:
     """Nominal diameter [mm] of a round section; None where it is none of a common bolt."""
     from scipy.spatial import ConvexHull
 
     flat = np.linalg.svd(np.eye(3) - np.outer(axis, axis))[0][:, :2]
     area = ConvexHull((places - places.mean(axis=0)) @ flat).volume  # of a plane figure it is the area
     wide = 1e3 * sqrt(4 * area / pi)
-    return next((size for size in WASHERS if abs(wide - size) <= ROUND * size), None)
+    return nearest_size(wide, lambda one: one.size, ROUND)

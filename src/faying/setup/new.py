@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
+from faying.bolt.vdi2230 import TIGHTENED
 from faying.checks import number
 from faying.errors import InputError
 from faying.file_kinds import STEP, kind_held, kind_of
@@ -14,11 +16,12 @@ from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
 from faying.misuse import checked_call
 from faying.setup.bolt_names import grouped
+from faying.setup.bolt_proposal import GRADE, BoltProposal
 from faying.setup.edit import written as quoted
 from faying.setup.faces import faces
 from faying.setup.found_dowels import DowelProposal
 from faying.setup.mesh_proposal import propose_mesh
-from faying.setup.proposal import GRADE, SHARE, BoltProposal, Proposal, propose
+from faying.setup.proposal import Proposal, propose
 from faying.setup.template import SCHEMA, surface
 from faying.style import Summary
 from faying.text import cut
@@ -33,7 +36,7 @@ class Answers:
 
     Args:
         materials: part -> material of the catalogue; steel where a part is left out.
-        preload: force of every bolt [N]; 70 % of the proof load of class 8.8 where None.
+        preload: force of every bolt [N]; that of class 8.8 which its bolt sheet accepts where None.
         scan: scan of one face; a synthetic surface of a fine finish where None.
     """
 
@@ -82,8 +85,12 @@ class Written(Summary):
                 {
                     "name": b.name,
                     "faces": list(b.faces),
-                    "size": b.size and f"M{b.size}",
+                    "size": b.size and f"M{b.size:g}",
                     "part": b.part,
+                    "head": b.shape,
+                    "engaged": {"unit": "m", "values": b.engaged},
+                    "washers": 0 if b.drawn is None else len(b.drawn.washers),
+                    "drawn": None if b.drawn is None else list(b.drawn.names),
                     "preload": {"unit": "N", "values": b.preload},
                 }
                 for b in found.bolts
@@ -113,7 +120,7 @@ def new_study(
         study: The file to write.
         scan: Scan of one face; a synthetic one of a fine finish is written where None.
         materials: Material of all parts, or part -> material, of the catalogue; steel where a part is left out.
-        preload: Force of each bolt [N], or text such as "12 kN"; 70 % of the proof load of class 8.8 where None.
+        preload: Force of each bolt [N], or text such as "12 kN"; what the bolt sheet accepts of class 8.8 where None.
         unit: Unit of a mesh file's coordinates, such as "mm".
         force: Whether files that exist are replaced.
 
@@ -221,7 +228,7 @@ NO_BOLT = """# No bolt was found in the geometry. Name the two faces that head a
 # seat = ["9 mm", "16 mm"]       # inner and outer diameter of what head and nut press on
 # diameter = "8 mm"
 # material = "S355"
-# preload = "14.9 kN"
+# preload = "14.5 kN"
 """
 SUPPORT = """# Assumed: the structure is free. A face that is held:
 # [[support]]
@@ -336,7 +343,7 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
     if bolt.part is not None:
         lines.append(f"part = {quoted(bolt.part)}")
         lines += [f"at = {_millimetres(bolt.at)}"] if bolt.at is not None else []
-        lines += [f'thread = "M{bolt.size}"', f'grade = "{GRADE}"  # ASSUMED'] if bolt.size else []
+        lines += [f'thread = "M{bolt.size:g}"', *_grade(bolt)] if bolt.size and bolt.graded else []
     else:
         assert bolt.ring is not None
         inner, outer = (show(d, "m") for d in bolt.ring)
@@ -344,9 +351,10 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
             lines.append(f"at = {_millimetres(bolt.at)}")
         lines += [
             f'seat = ["{inner}", "{outer}"]',
-            f'diameter = "{bolt.size} mm"',
+            f'diameter = "{bolt.size:g} mm"',
             f"material = {quoted(STEEL)}",
-            f'grade = "{GRADE}"  # ASSUMED',
+            *_grade(bolt),
+            *_as_drawn(bolt),
         ]
     if answers.preload is not None:
         lines.append(f'preload = "{show(answers.preload, "N", digits=6)}"')
@@ -356,7 +364,27 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
         lines.append(f'preload = "{show(bolt.preload, "N")}"  # ASSUMED: {_share()}')
     else:
         lines.append('# preload = "10 kN"  # give the force; its thread is not known')
+    for washer in () if bolt.drawn is None else bolt.drawn.washers:
+        sizes = zip(("inner", "outer", "thickness"), washer, strict=True)
+        lines += ["[[bolt.washer]]", *(f'{key} = "{show(d, "m")}"' for key, d in sizes), f"material = {quoted(STEEL)}"]
     return "\n".join([*lines, ""])
+
+
+def _grade(bolt: BoltProposal) -> list[str]:
+    return [f'grade = "{GRADE}"  # ASSUMED'] if bolt.graded else []
+
+
+def _as_drawn(bolt: BoltProposal) -> list[str]:
+    """Keys of the head and the thread, and of the masses that are drawn."""
+    lines = [f"head = {quoted(bolt.shape)}"] if bolt.shape != "hexagon" else []
+    lines += [f'engaged = "{show(bolt.engaged, "m")}"'] if bolt.engaged is not None else []
+    if bolt.drawn is not None:
+        lines += [f'shank = "{show(bolt.drawn.shank, "m")}"'] if bolt.drawn.shank is not None else []
+        kilos = [volume * (CATALOGUE[STEEL].density or 0.0) for volume in bolt.drawn.volumes]
+        lines.append(f'head_mass = "{show(kilos[0], "kg", digits=6)}"  # drawn: what of its bodies is not the shank')
+        if bolt.drawn.has_end:
+            lines.append(f'nut_mass = "{show(kilos[1], "kg", digits=6)}"  # drawn: nut, or end of the screw')
+    return lines
 
 
 def _dowel(dowel: DowelProposal) -> str:
@@ -368,7 +396,8 @@ def _dowel(dowel: DowelProposal) -> str:
 
 
 def _share() -> str:
-    return f"{SHARE:.0%} of the proof load of class {GRADE}, ISO 898-1"
+    scatter = TIGHTENING[DEFAULT_WAY].scatter
+    return f"class {GRADE}: stress at assembly {TIGHTENED:.0%} of yield at {1 + scatter:.2f} times it (VDI 2230, R7)"
 
 
 def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[str]:

@@ -1,25 +1,23 @@
 """A study proposed from CAD facts: joints where parts touch, bolts where holes line up, a size of mesh."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from math import floor, log10
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from faying.bolt.threads import Fastener, Thread
 from faying.errors import InputError
 from faying.geometry.face_facts import GeometryFacts, PartFacts, TouchingFaces, part_distance
 from faying.geometry.selectors import TOUCHING, Selector
 from faying.memory import available
+from faying.setup.bolt_proposal import BoltProposal, rounded
 from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import find_fasteners, quoted
-from faying.setup.found_bolts import FoundBolt, LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
+from faying.setup.found_bolts import LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
 from faying.setup.found_dowels import DowelProposal, found_dowels
 from faying.units import show
 
-GRADE, SHARE = "8.8", 0.7  # of the bolts, and the share of the proof load that they are tightened to
 ROOM = 0.7  # of the free memory that a proposed run takes, whose unknowns are an estimate
 ACROSS = 2  # elements across the thinnest part
 MAX_UNKNOWNS = 300_000  # unknowns beyond which the mesh is proposed coarser
@@ -34,39 +32,6 @@ class JointProposal:
     faces: tuple[str, str]
     gap: float
     area: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class BoltProposal:
-    """A bolt through a row of holes, or a part that is a bolt.
-
-    Args:
-        name: what tables call it.
-        faces: names of the seats; of a meshed bolt, of its faces under head and nut.
-        size: nominal diameter [mm]; None where it is not known.
-        at: point on the axis [m]; None where a tapped hole says it.
-        ring: inner and outer diameter of the seat [m].
-        part: the part that it is, if it is one.
-        force: what a mesh file pulls it with, as the file writes it; None where it gives none.
-        remark: where size and ring come from.
-    """
-
-    name: str
-    faces: tuple[str, str]
-    size: int | None = None
-    at: tuple[float, float, float] | None = None
-    ring: tuple[float, float] | None = None
-    part: str | None = None
-    force: float | None = None
-    remark: str = ""
-
-    @property
-    def preload(self) -> float | None:
-        """70 % of the proof load of class 8.8 [N], three digits; None where the size is not known."""
-        if self.size is None:
-            return None
-        force = SHARE * Fastener(thread=Thread.coarse(self.size * 1e-3), grade=GRADE).proof_load
-        return rounded(force, 3)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,9 +112,16 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     remarks += left.remarks
     if not bolts:
         remarks.append("no bolt was found: fill in [[bolt]] by hand before you run the study")
-    size, words = mesh_size(facts, {bolt.part for bolt in bolts})
+    size, words = mesh_size(facts, {*(bolt.part for bolt in bolts), *fasteners.washers})
     remarks.append(words)
-    named_bolts = tuple(_named(bolt, k, names) for k, bolt in enumerate(bolts, 1))
+    named_bolts = tuple(
+        replace(
+            bolt,
+            name=f"bolt {k}",
+            faces=(names.of_several(bolt.head, bolt.words[0]), names.of_several(bolt.end, bolt.words[1])),
+        )
+        for k, bolt in enumerate(bolts, 1)
+    )
     dowels = found_dowels(facts, fasteners, names)
     return Proposal(
         facts=facts,
@@ -177,18 +149,6 @@ def named_joints(
     return tuple(joints)
 
 
-def _named(bolt: FoundBolt, number: int, names: FaceNames) -> BoltProposal:
-    return BoltProposal(
-        name=f"bolt {number}",
-        faces=(names.of_several(bolt.head, bolt.words[0]), names.of_several(bolt.end, bolt.words[1])),
-        size=bolt.size,
-        at=bolt.at,
-        ring=bolt.ring,
-        part=bolt.part,
-        remark=bolt.remark,
-    )
-
-
 def snapped(facts: GeometryFacts, contacts: Sequence[TouchingFaces]) -> tuple[float, list[str]]:
     """The gap [m] up to which faces count as touching, 0 where all touch; and what there is to say of it."""
     widest = max((abs(contact.gap) for contact in contacts), default=0.0)
@@ -196,12 +156,6 @@ def snapped(facts: GeometryFacts, contacts: Sequence[TouchingFaces]) -> tuple[fl
         return 0.0, []
     words = f"faces up to {show(widest, 'm')} apart are taken for touching (geometry.snap)"
     return rounded(1.01 * widest, 2, up=True), [words]
-
-
-def rounded(value: float, digits: int, *, up: bool = False) -> float:
-    """A value to so many digits, the nearest or the next above."""
-    step: float = 10.0 ** (floor(log10(value)) - digits + 1)
-    return round((np.ceil(value / step) if up else round(value / step)) * step, 15)
 
 
 def touching(facts: GeometryFacts) -> list[TouchingFaces]:
@@ -223,7 +177,9 @@ def touching(facts: GeometryFacts) -> list[TouchingFaces]:
     return [*touching, *(one for one in near if one.gap <= least[frozenset(one.parts)] + close)]
 
 
-def _apart(facts: GeometryFacts, contacts: Sequence[TouchingFaces], bolts: Sequence[FoundBolt]) -> list[TouchingFaces]:
+def _apart(
+    facts: GeometryFacts, contacts: Sequence[TouchingFaces], bolts: Sequence[BoltProposal]
+) -> list[TouchingFaces]:
     """Faces that only nearly touch, of parts that no bolt clamps together and that other parts touch."""
     close = TOUCHING * facts.size
     touched = {part for one in contacts if abs(one.gap) <= close for part in one.parts}
@@ -249,8 +205,11 @@ def _alone(facts: GeometryFacts, path: Path) -> tuple[str, ...]:
 
 
 def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]:
-    """Largest element [m], and why: two across the thinnest part, more where memory or time would not do."""
-    plates = [part for part in facts.parts if part.name not in bolts]
+    """Largest element [m], and why: two across the thinnest part, more where memory or time would not do.
+
+    bolts: parts that do not count: bolts and washers.
+    """
+    plates = [part for part in facts.parts if part.name not in bolts] or list(facts.parts)
     thin = min(plates, key=_thickness)
     size = rounded(_thickness(thin) / ACROSS, 2)
     why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=3)} thick"

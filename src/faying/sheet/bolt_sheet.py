@@ -12,6 +12,7 @@ from faying.answer.tracks import shapes_of
 from faying.bolt.bolt import Bolt, FittedBolt
 from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import Thread
+from faying.bolt.vdi2230 import DEFAULT_FRICTION, TIGHTENED
 from faying.case.case import Case, Progress, bare
 from faying.case.engine import engine_of
 from faying.case.scatter import preload_scatter
@@ -34,8 +35,6 @@ NEGATIVE = (
     "; below 0: where this load relieves the joint round the bolt, the bolt loses force too, as parts do that bend "
     "between bolts. Phi and all rows take it as found, not as 0"
 )
-DEFAULT_FRICTION = 0.12  # the middle of class B, 0.08 to 0.16: metal, oiled or coated (VDI 2230 Part 1:2015, Table A5)
-USED = 0.9  # of the yield stress that tightening may use (VDI 2230 Part 1:2015, R7)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -246,7 +245,7 @@ def _thread(bolt: Bolt | SolidBolt) -> list[Quantity]:
         _quantity("F_p", "proof load", "N", None if fastener is None else fastener.proof_load, graded),
         _quantity("R_m", "tensile strength", "Pa", strength, graded),
         _quantity("R_p", "stress at yield", "Pa", yielding, graded),
-        _quantity("R_p09", "0.9 times the stress at yield", "Pa", yielding and USED * yielding, graded),
+        _quantity("R_p09", "0.9 times the stress at yield", "Pa", yielding and TIGHTENED * yielding, graded),
         _quantity("tau_BS", "0.6 times the tensile strength", "Pa", strength and SHEAR * strength, graded),
     ]
 

@@ -5,21 +5,12 @@ from dataclasses import replace
 from inspect import signature
 from math import pi, sqrt, tan
 
+from faying.bolt.vdi2230 import reduced_stress, thread_torque
 from faying.sheet.rows import Step
 
 GUIDELINE = "VDI 2230 Part 1:2015"
 STRIPPING = 0.897  # C_3 for a bolt that is stronger than the tapped part (Alexander 1977), the least that it can be
 SHEAR = 0.6  # shear strength of a bolt over its tensile strength, at least (VDI 2230 Part 1:2015, section 5.5.6)
-
-
-def thread_torque(F: float, P: float, d_2: float, mu_G: float) -> float:
-    """Torque [N m] in the shank while a bolt is tightened to F [N]."""
-    return F * (0.16 * P + 0.58 * d_2 * mu_G)
-
-
-def reduced_stress(F: float, d_0: float, torque: float) -> float:
-    """Von Mises stress [Pa] at assembly, the shear stress even over the section of diameter d_0 [m]."""
-    return sqrt((F / (pi / 4 * d_0**2)) ** 2 + 3 * (torque / (pi / 12 * d_0**3)) ** 2)
 
 
 def working_stress(F: float, d_0: float, torque: float) -> float:

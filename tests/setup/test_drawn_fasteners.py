@@ -1,0 +1,81 @@
+"""Assemblies whose fasteners are bodies: number, size, head, nut, washer, engagement and preload, and their mass."""
+
+import numpy as np
+import pytest
+
+import faying
+from faying.case.case import build
+from faying.geometry.cad import read_parts
+from faying.setup import new
+from faying.study import Study
+from tests.helpers import assemblies, drawn
+from tests.helpers.proposed import proposed
+
+# N, of class 8.8: 0.9 of 640 MPa, 660 above M16, in tension and torsion at mu_G = 0.12, over 1.28 (VDI 2230, R7)
+FORCES = {6: 7940, 8: 14500, 10: 23100, 12: 33600, 16: 63200, 42: 470000}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Name -> the STEP file, what is expected, and the proposal, each made once."""
+    folder, kept = tmp_path_factory.mktemp("drawn"), {}
+
+    def of(name):
+        if name not in kept:
+            path, expected = drawn.MADE[name](folder / f"{name}.step")
+            kept[name] = path, expected, new.find(path)
+        return kept[name]
+
+    return of
+
+
+@pytest.mark.parametrize("name", drawn.MADE)
+def test_bolts_are_found_as_they_are_drawn(made, name):
+    _, expected, found = made(name)
+    assert len(found.bolts) == len(expected), [bolt.remark for bolt in found.bolts]
+    for bolt, one in zip(found.bolts, expected, strict=True):
+        assert bolt.size == one.size
+        assert bolt.shape == one.head
+        assert np.array(bolt.ring) * 1e3 == pytest.approx(one.ring, abs=1e-6)
+        assert (bolt.at is None) == one.tapped
+        assert (0 if bolt.drawn is None else len(bolt.drawn.washers)) == one.washers
+        assert bolt.engaged == (None if one.engaged is None else pytest.approx(one.engaged * 1e-3))
+        assert one.says in bolt.remark
+        assert bolt.preload == pytest.approx(FORCES[one.size], rel=6e-3)
+
+
+@pytest.mark.parametrize("name", drawn.MADE)
+def test_no_fastener_is_meshed(made, name):
+    _, _, found = made(name)
+    assert all(part.name.split()[0] in ("plate", "tube", "lower", "upper") for part in found.facts.parts)
+
+
+def test_a_shaft_with_a_collar_asks_for_no_bolt(tmp_path):
+    """Its holes of 20 mm are medium clearance holes of M18 (ISO 273), and it leaves no play in them."""
+    cylinder = assemblies._shapes()[1]
+    parts = drawn._plates((20, 20), (20, 20), [drawn.A])
+    shaft = cylinder(*drawn.A, -30, 60, 10) + cylinder(*drawn.A, 40, 48, 14)
+    found = new.find(assemblies._write(tmp_path / "shaft.step", **parts, shaft=shaft))
+    assert not found.bolts
+    assert found.left_out == ("shaft",)
+
+
+SLOW = [
+    pytest.param(name, marks=pytest.mark.slow) for name in drawn.MADE if name not in ("socket_in_thread", "three_parts")
+]
+
+
+@pytest.mark.parametrize("name", ["socket_in_thread", *SLOW])
+def test_the_beams_weigh_what_the_bodies_do(made, name):
+    """Volumes of the bodies that are left out, by the CAD kernel, times the density of steel."""
+    path, _, found = made(name)
+    study = Study.read(proposed(path, "20 mm"))
+    structure = build(study)
+    along = np.zeros(3 * len(structure.mesh.points))
+    along[0::3] = 1.0
+    both = zip(structure.fitted_bolts, found.bolts, strict=True)
+    beams = sum(along @ bolt.mass @ along for bolt, one in both if one.drawn is not None)
+    cad = read_parts(path)
+    volumes = dict(zip(cad.names, (1e-9 * solid.mass for solid in cad.solids), strict=True))
+    bodies = sum(volumes[part] for part in study.geometry.leave_out)
+    assert beams == pytest.approx(faying.CATALOGUE["S355"].density * bodies, rel=2e-3)
