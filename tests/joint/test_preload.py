@@ -63,32 +63,6 @@ def test_balance_and_warm_start():
     assert found.pressures[0] == pytest.approx(direct.pressures[0], rel=1e-6)
 
 
-def test_loads_in_a_row_lead_on_to_the_next():
-    """The same states as from the last one alone, in fewer steps; a load of another kind begins with the last one."""
-    structure = bars(material=STEEL)
-    ahead, alone = structure.assembly(), structure.assembly()
-    steps = np.zeros((6, 2), dtype=int)
-    for number, force in enumerate((3e3, 4e3, 5e3, 6e3, 7e3, 8e3)):
-        alone._past = alone._past[-1:]
-        found, wanted = (problem.solve(squeeze(structure, force)) for problem in (ahead, alone))
-        assert found.pressures[0] == pytest.approx(wanted.pressures[0], rel=1e-7)
-        steps[number] = found.inner_steps, wanted.inner_steps
-    assert np.array_equal(steps[:2, 0], steps[:2, 1])
-    assert steps[2:, 0].sum() < 0.7 * steps[2:, 1].sum()
-    # the same size again, and back: neither divides by zero
-    for force in (8e3, 8e3, 2e3):
-        found = ahead.solve(squeeze(structure, force))
-        assert structure.joints[0].interface.weights @ found.pressures[0] == pytest.approx(force, rel=1e-8)
-    bent = squeeze(structure, 4e3) + 0.1 * face_pair(structure, 4e3)
-    assert ahead._extrapolated(bent) is ahead._past[-1][1]
-    assert ahead.solve(bent).pressures[0] == pytest.approx(structure.assembly().solve(bent).pressures[0], rel=1e-6)
-    slips = bars(material=STEEL, friction=0.3)
-    assembly = slips.assembly()
-    for force in (1e3, 2e3):
-        assembly.solve(squeeze(slips, force))
-    assert len(assembly._past) == 1  # what slipped depends on what was before, so that there is no curve to go on
-
-
 def face_pair(structure, force):
     """Load [N] (unknowns,) that presses the bars together along a line beside their axis."""
     mesh = structure.mesh

@@ -212,6 +212,16 @@ def test_the_mesh_is_never_coarser_than_the_thickest_part(monkeypatch):
     part = PartFacts(name="plate", volume=1e-4, area=0.0222, low=(0.0, 0.0, 0.0), high=(0.1, 0.1, 0.01))
     size, why = mesh_size(SimpleNamespace(parts=(part,)), set())
     assert size == pytest.approx(0.01)
+    assert "1,000,000,000 unknowns at any size" in why
+
+
+def test_an_estimate_that_rises_for_a_while_is_no_end_of_the_search(monkeypatch):
+    """Beside small holes a slightly larger size counts more: the first size that fits is taken all the same."""
+    monkeypatch.setattr("faying.setup.proposal.unknowns_of", lambda facts, size: 10**9 if size < 0.008 else 10**5)
+    monkeypatch.setattr("faying.setup.proposal.available", lambda: 8e9)
+    part = PartFacts(name="plate", volume=1e-4, area=0.0222, low=(0.0, 0.0, 0.0), high=(0.1, 0.1, 0.01))
+    size, why = mesh_size(SimpleNamespace(parts=(part,)), set())
+    assert size == pytest.approx(0.008, rel=0.1)
     assert "coarser than two elements" in why
 
 

@@ -26,13 +26,11 @@ DRAWN_BACK_FROM = 10.0  # imbalance over the load from which a start is drawn ba
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
 FORCING_TERM = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 FIX_FRICTION_BELOW = 1e-4  # imbalance below which k_t and the limit of friction are kept
-ALIKE = 1e-9  # relative difference of two loads up to which one is a multiple of the other
 MAX_NEWTON_STEPS = 60
 # share of a change of k_t that the next one is, either way, from which both are taken to where they lead: below it
 # changes die out by themselves in a few steps; the most that it is taken for, so that none goes 20 times as far; and
 # how far the two may point apart [-]
 SLOW, SLOWEST, ALIGNED = 0.5, 0.95, 0.2
-STATES = 4  # under multiples of one load, from which the next is extrapolated
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,8 +105,7 @@ class Equilibrium(ABC):
         self.joints = list(joints)
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
         self._anchors = [np.zeros((len(interface.weights), 2)) for interface, _ in self.joints]
-        self._past: list[tuple[float, Array]] = []  # size [N] of multiples of one load, and displacements under them
-        self._pattern: Array | None = None  # that load, of size 1
+        self._last: Array | None = None  # displacement under the load before, from which the next sets out
         self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None  # joints where last asked
         self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
@@ -162,10 +159,10 @@ class Equilibrium(ABC):
         self._check_load(load)
         self.stiffness = self.parts if shanks is None else self.parts + shanks
         if start is None:
-            start = self._extrapolated(load) if self._past else self._start(load)
+            start = self._start(load) if self._last is None else self._last
         start = self._drawn_back(start, load)
         found = self._newton(start, load, tolerance, steps)
-        self._remember(load, found.displacement, alone=shanks is None)
+        self._last = found.displacement
         return found
 
     def _newton(self, u: Array, load: Array, tolerance: float, most: int) -> PreloadState:
@@ -234,29 +231,6 @@ class Equilibrium(ABC):
                 return self._line_search(rest, u, load, self._stick_slip(rest))
             except NotConverged:  # the way does not lead down from rest
                 return u
-
-    def _extrapolated(self, load: Array) -> Array:
-        """Displacement to start from: the last one, or what leads on from the last few, whichever is nearer to balance.
-
-        Those under multiples of one load lie on a smooth curve, through which polynomials go.
-        """
-        last = self._past[-1][1]
-        size = float(np.linalg.norm(load))
-        if self._pattern is None or np.linalg.norm(load / size - self._pattern) > ALIKE:
-            return last
-        choices = [last, *(_through_last(self._past[-k:], size) for k in range(2, len(self._past) + 1))]
-        left = [np.linalg.norm(self._out_of_balance(u, load, self._stick_slip(u))) for u in choices]
-        return choices[int(np.argmin(left))]
-
-    def _remember(self, load: Array, u: Array, *, alone: bool) -> None:
-        """Keep a displacement for the loads to come; alone: no bolt was tight under it."""
-        size = float(np.linalg.norm(load))
-        smooth = alone and all(friction is None for friction in self.friction)  # slip depends on what was before
-        pattern = load / size if smooth else None
-        if pattern is None or self._pattern is None or np.linalg.norm(pattern - self._pattern) > ALIKE:
-            self._past.clear()
-        self._pattern = pattern
-        self._past = [*(one for one in self._past if one[0] != size), (size, u)][-STATES:]
 
     def _move_anchors(self, u: Array, slip_states: Sequence[StickSlip]) -> tuple[float, ...]:
         """Carry the shear that is left to the next load; return the share of the sliding area of each joint."""
@@ -409,16 +383,6 @@ def check_balance(load: Array, rigid: Array) -> None:
             f"the bolt forces do not balance ({net / scale:.1e} of the load is left over); each bolt must "
             "pull between two faces of different parts that face each other"
         )
-
-
-def _through_last(past: Sequence[tuple[float, Array]], size: float) -> Array:
-    """Lagrange's polynomial through displacements under loads of some sizes, at another size."""
-    sizes = np.array([one for one, _ in past])
-    out = np.zeros_like(past[0][1])
-    for k, (own, u) in enumerate(past):
-        others = np.delete(sizes, k)
-        out += np.prod((size - others) / (own - others)) * u
-    return out
 
 
 def _followed(

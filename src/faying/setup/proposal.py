@@ -214,16 +214,24 @@ def mesh_size(facts: GeometryFacts, bolts: set[str | None]) -> tuple[float, str]
     size = rounded(_thickness(thin) / ACROSS, 2)
     why = f"{ACROSS} elements across {thin.name!r}, which is about {show(_thickness(thin), 'm', digits=3)} thick"
     free, widest = available(), max(_thickness(part) for part in plates)
-    while size < widest:
-        unknowns = unknowns_of(facts, size)
-        if unknowns <= MAX_UNKNOWNS and (free is None or memory_of_run(unknowns) <= ROOM * free):
-            break
-        larger = min(rounded(1.1 * size, 2), widest)
-        if unknowns_of(facts, larger) > unknowns:  # that of holes grows
-            break
-        size = larger
+
+    def fits(unknowns: int) -> bool:
+        return unknowns <= MAX_UNKNOWNS and (free is None or memory_of_run(unknowns) <= ROOM * free)
+
+    tried = [(unknowns_of(facts, size), size)]
+    while not fits(tried[-1][0]) and tried[-1][1] < widest:
+        larger = min(rounded(1.1 * tried[-1][1], 2), widest)
+        tried.append((unknowns_of(facts, larger), larger))
+    # the estimate for small holes may rise with the size
+    unknowns, found = tried[-1] if fits(tried[-1][0]) else min(tried, key=lambda one: (one[0], -one[1]))
+    if found > size:
         why = "coarser than two elements across the thinnest part, for memory and time; try a finer one, too"
-    return size, f"mesh of {show(size, 'm')}: {why}"
+    if free is not None and memory_of_run(unknowns) > ROOM * free:
+        why = (
+            f"about {unknowns:,} unknowns at any size, more than fits into memory; small holes and curved faces ask "
+            "for them: leave them out of the geometry"
+        )
+    return found, f"mesh of {show(found, 'm')}: {why}"
 
 
 def _thickness(part: PartFacts) -> float:
