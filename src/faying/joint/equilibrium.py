@@ -27,10 +27,8 @@ ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall
 FORCING_TERM = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 FIX_FRICTION_BELOW = 1e-4  # imbalance below which k_t and the limit of friction are kept
 MAX_NEWTON_STEPS = 60
-# share of a change of k_t that the next one is, either way, from which both are taken to where they lead: below it
-# changes die out by themselves in a few steps; the most that it is taken for, so that none goes 20 times as far; and
-# how far the two may point apart [-]
-SLOW, SLOWEST, ALIGNED = 0.5, 0.95, 0.2
+ALIKE = 1e-6  # share of the greatest change of k_t below which one tells nothing new
+DEPTH = 3  # changes of k_t before, from which the next one is foreseen
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,7 +169,7 @@ class Equilibrium(ABC):
         Raises NotConverged after `most` steps.
         """
         scale, taken, inner = float(np.linalg.norm(load)), 0, 0
-        least, rounding, moved = np.inf, None, None
+        least, rounding, past = np.inf, None, list[tuple[Array, Array]]()
         slip_states: Sequence[StickSlip] = self._stick_slip(u)
         while True:
             force = self._out_of_balance(u, load, slip_states)
@@ -188,7 +186,7 @@ class Equilibrium(ABC):
                 if size < tolerance or change < 1e-12:
                     slip_states = fresh
                     break
-                slip_states, moved = _followed(slip_states, fresh, moved)
+                slip_states = _followed(slip_states, fresh, past)
                 continue
             if taken >= most:
                 raise NotConverged(
@@ -201,7 +199,7 @@ class Equilibrium(ABC):
             u = self._line_search(u, step, load, slip_states)
             # far off, k_t follows at once; near the end it is kept so that Newton converges
             if size > FIX_FRICTION_BELOW:
-                slip_states, moved = _followed(slip_states, self._stick_slip(u), moved)
+                slip_states = _followed(slip_states, self._stick_slip(u), past)
             taken, inner = taken + 1, inner + count
         slipping = self._move_anchors(u, slip_states)
         openings, pressures = self.contact(u)
@@ -386,29 +384,30 @@ def check_balance(load: Array, rigid: Array) -> None:
 
 
 def _followed(
-    old: Sequence[StickSlip], new: Sequence[StickSlip], last: Array | None
-) -> tuple[Sequence[StickSlip], Array | None]:
-    """k_t as the new pressure has it, or, where changes die out slowly or swing, where they lead to; and the change.
+    old: Sequence[StickSlip], new: Sequence[StickSlip], past: list[tuple[Array, Array]]
+) -> Sequence[StickSlip]:
+    """States with the k_t of the new pressure, or with those to which the last few changes lead.
 
     Each pressure sets k_t and k_t moves the pressure: of two joints side by side one swing was 0.9 times the last.
 
     Args:
         old, new: states of the joints before and at the new pressure.
-        last: change of k_t [Pa/m] (q,) before, None after a step to where changes lead.
+        past: k_t [Pa/m] (q,) of all points before, and what the pressures under them make of it; it grows by this.
 
     Source:
-        Aitken's extrapolation of vectors: B. Irons and R. C. Tuck 1969, doi:10.1002/nme.1620010306.
+        Anderson 1965, doi:10.1145/321296.321305, as Walker and Ni 2011, doi:10.1137/10078356X, equation 2.1.
     """
-    change = np.concatenate([one.k_t - was.k_t for one, was in zip(new, old, strict=True)])
-    if last is None or not np.any(last):
-        return new, change
-    left = float(change @ last / (last @ last))
-    if abs(left) < SLOW or np.linalg.norm(change - left * last) > ALIGNED * np.linalg.norm(change):
-        return new, change
-    left = min(left, SLOWEST)
-    ahead = np.split(change * left / (1 - left), np.cumsum([len(one.k_t) for one in new])[:-1])
-    pairs = zip(new, ahead, strict=True)
-    return [replace(one, k_t=np.clip(one.k_t + by, one.k_t / 2, 2 * one.k_t)) for one, by in pairs], None
+    before, after = (np.concatenate([one.k_t for one in states]) for states in (old, new))
+    past.append((before, after))
+    del past[: -DEPTH - 1]
+    change, ahead = after - before, after
+    if len(past) > 1:
+        others = np.stack([change - (g - x) for x, g in past[:-1]], axis=1)
+        shares = np.linalg.lstsq(others, change, rcond=ALIKE)[0]
+        ahead = after - np.stack([after - g for _, g in past[:-1]], axis=1) @ shares
+        ahead = np.clip(ahead, after / 2, 2 * after)
+    parts = np.split(ahead, np.cumsum([len(one.k_t) for one in new])[:-1])
+    return [replace(one, k_t=k_t) for one, k_t in zip(new, parts, strict=True)]
 
 
 def _slip_change(new: StickSlip, old: StickSlip) -> float:
@@ -419,5 +418,5 @@ def _slip_change(new: StickSlip, old: StickSlip) -> float:
 
 
 def _relative_change(new: Array, old: Array) -> float:
-    size = float(np.linalg.norm(new))
+    size = max(float(np.linalg.norm(one)) for one in (new, old))  # a joint that opens has nothing left
     return float(np.linalg.norm(new - old)) / size if size > 0 else 0.0
