@@ -49,7 +49,15 @@ def _put(file: Path, path: Path) -> None:
     if path.exists() and not path.is_file() and not path.is_dir():
         path.write_bytes(file.read_bytes())
     else:
-        os.replace(file, path.resolve())
+        target = Path(os.path.realpath(path))
+        try:
+            os.replace(file, target)
+        except OSError as fault:
+            if fault.errno != errno.EXDEV:
+                raise
+            near = target.with_name(f".{target.name}.part")  # a link leads to another disk
+            shutil.copyfile(file, near)
+            os.replace(near, target)
 
 
 SEAL = b"FAYING-SHA256 "  # behind the bytes that it is the checksum of, with 64 digits

@@ -1,3 +1,5 @@
+import warnings
+
 import numpy as np
 import pytest
 
@@ -88,6 +90,8 @@ G = 9.80665
         ("f [Hz];Magnitude [dB/10.0u (m/s²)/N];Phase [°]", (LINES, 20 * np.log10(abs(TRUE)) + 100, PHASE)),
         ("Frequency kHz,dB re 1 m/s^2/N,Phase deg", (LINES / 1e3, 20 * np.log10(abs(TRUE)), PHASE)),
         ("f [Hz],Mag dB (re 10 (m/s^2)/kN),Phase [deg]", (LINES, 20 * np.log10(abs(TRUE)) + 40, PHASE)),
+        ("Frequency Hz,Real m/s^2/N,Imag m/s^2/N", (LINES, TRUE.real, TRUE.imag)),
+        ("f Hz,Mag mm/s²/N,Phase °", (LINES, 1e3 * abs(TRUE), PHASE)),
         ("omega [rad/s]\tRe [mm/s^2/N]\tIm [mm/s^2/N]", (2 * np.pi * LINES, 1e3 * TRUE.real, 1e3 * TRUE.imag)),
         ("imag [m/(N*s^2)],real [m/(N*s^2)],frequency [rpm]", (TRUE.imag, TRUE.real, 60 * LINES)),
         ("# Frequency [kHz], H_re [m/s^2/kN], H_im [m/s^2/kN]", (LINES / 1e3, 1e3 * TRUE.real, 1e3 * TRUE.imag)),
@@ -127,6 +131,7 @@ def test_what_a_heading_leaves_open_is_noted(tmp_path):
         ("frequency [Hz],real,imag,noise", 'the column "noise" is unknown'),
         ("frequency [Hz],real,imag,real,imag,coherence", "1 columns of coherence for 2 FRFs"),
         ("frequency [Hz],mag [dB re 20],phase [deg]", "is not a reference"),
+        ("frequency [Hz],mag [dB re 0 m/s^2/N],phase [deg]", "is not a reference"),
         ("time [s],real,imag", 'the column "time .s." is unknown'),
         ("omega,real,imag", '"omega" states no unit'),
         ("frequency [m],real,imag", '"frequency .m." states no unit'),
@@ -201,6 +206,15 @@ def test_a_line_at_0_hz_without_a_number_is_left_out(tmp_path):
     path = tmp_path / "frf.csv"
     path.write_text("frequency [Hz],mag [m/N],phase [deg]\n0,inf,0\n1,2,90\n2,3,0\n")
     np.testing.assert_allclose(read_frf_text([path], quantity="receptance").values[0, 0], [2j, 3], atol=1e-15)
+    for first in ("(nan+nanj)", "nan+nanj", "(inf+0j)", "(0+nanj)"):
+        path.write_text(f"{first}\n(2+3j)\n(3+4j)\n")
+        listed = read_frf_text([path], quantity="receptance", frequency_step=1.0)
+        np.testing.assert_array_equal(listed.frequency, [1, 2])
+        np.testing.assert_array_equal(listed.values[0, 0], [2 + 3j, 3 + 4j])
+    path.write_text("frequency [Hz],re [m/N],im [m/N]\n0,inf,-inf\n1,2,3\n2,3,4\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_frf_text([path], quantity="receptance")
     path.write_text("frequency [Hz],re [m/N],im [m/N]\n0,NaN,NaN\n1,2,3\n2,3,4\n")
     found = read_frf_text([path], quantity="receptance")
     np.testing.assert_array_equal(found.frequency, [1, 2])

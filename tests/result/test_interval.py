@@ -41,6 +41,15 @@ def test_no_stiffness_of_a_joint_passes_free_and_bonded_faces():
     assert high[0, 0] == pytest.approx(105 * np.exp(0.02))
 
 
+def test_the_best_estimate_of_modes_that_change_places_lies_between_its_ends():
+    """Two modes at 100 and 104 Hz whose ends are 2 and 10 % away, with bounds of ranks between them."""
+    ends = np.log([[0.98, 0.90], [1.02, 1.10]])[:, None]
+    plain = Interval.about(np.array([[100.0, 104.0]]), {"law": ends})
+    found = plain.between(np.array([93.0, 101.0]), np.array([103.0, 120.0]))
+    assert np.all(found.low <= found.best)
+    assert np.all(found.best <= found.high)
+
+
 def test_one_source_that_is_not_symmetric_keeps_its_own_quantiles():
     """f = 100 (1 - exp(-x)) of a normal x, as stiffness that saturates: its median is no middle of its ends."""
     x = 1.0 + 0.5 * SCORE * np.array([-1.0, 0.0, 1.0])

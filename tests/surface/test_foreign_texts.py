@@ -79,6 +79,18 @@ def test_positions_around_a_corner_are_no_heights(tmp_path, corner, mark, down):
         read(tmp_path / "m.txt", content, channel="A")
 
 
+def test_a_row_that_is_left_out_stays_empty_and_one_twice_is_refused(tmp_path):
+    """Far down a file, where nobody has looked at the positions while its layout was found."""
+    heights = np.random.default_rng(1).normal(size=(60, 8))
+    rows = [f"{k}," + ",".join(f"{value:.9g}" for value in row) for k, row in enumerate(heights)]
+    head = "um," + ",".join(str(k) for k in range(8))
+    found = read(tmp_path / "m.csv", "\n".join([head, *rows[:50], *rows[51:]]) + "\n").heights
+    assert np.isnan(found[50]).all()
+    np.testing.assert_allclose(np.delete(found, 50, 0), 1e-6 * np.delete(heights, 50, 0), rtol=1e-7)
+    with pytest.raises(ReadError, match="have one position"):
+        read(tmp_path / "m.csv", "\n".join([head, *rows[:50], *rows[49:]]) + "\n")
+
+
 def test_scans_packed_by_gzip_are_read(tmp_path):
     for name, content in (("a.csv", text(rows()).encode()), ("a.x3p", None)):
         plain = tmp_path / name

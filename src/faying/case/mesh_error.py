@@ -77,11 +77,12 @@ def loaded_nodes(structure: Structure) -> Mask:
     faces = [face for joint in structure.joints if joint.per_node for face in joint.faces]
     faces += [face for bolt in structure.bolts for face in bolt.faces]
     faces += [wall for dowel in structure.dowels for wall in dowel.walls]
-    faces += [support.face for support in structure.supports]
     faces += [mass.face for mass in structure.masses if mass.face is not None]
     out = np.zeros(len(mesh.points), dtype=bool)
     for face in faces:
         out[mesh.face_nodes(face)] = True
+    for support in structure.supports:
+        out[support.nodes(mesh)] = True
     out[np.unique(structure.fixed // 3)] = True
     return out
 

@@ -8,11 +8,10 @@ from typing import final
 import numpy as np
 
 from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
-from faying.case.case import checked_mesh, surfaces_of
+from faying.case.case import checked_mesh, interface_of, surfaces_of
 from faying.case.law_range import of_joints
 from faying.case.waves import drawn_on
 from faying.distribution import Distribution
-from faying.fe.interface import join
 from faying.form.machining import ASSUMED
 from faying.study.keys.bolt_sheet import BoltSheetChoice
 from faying.study.keys.joint import JointChoice
@@ -198,8 +197,7 @@ def _wavy(study: Study) -> list[JointChoice]:
         return []
     mesh, out = checked_mesh(study), []
     for joint, surface, may in zip(study.joints, surfaces_of(study), asked, strict=True):
-        met = join(mesh, *joint.faces, search_distance=joint.search_distance)
-        if may and drawn_on(study, mesh, joint, met, surface) is not None:
+        if may and drawn_on(study, mesh, joint, interface_of(study, mesh, joint, surface)[0], surface) is not None:
             out.append(joint)
     return out
 

@@ -17,7 +17,11 @@ from faying.text import json_text
 @click.option("--unit", help='Unit of a mesh file\'s coordinates, such as "mm".')
 @click.option("--scan", type=PATH, help="Scan of one face (default: a synthetic one of a fine finish).")
 @click.option("--out", type=PATH, default="study.toml", show_default=True, help="The study file.")
-@click.option("--yes", is_flag=True, help="Ask nothing; assume steel, class 8.8, 70 % of the proof load, and print it.")
+@click.option(
+    "--yes",
+    is_flag=True,
+    help="Ask nothing; assume steel, class 8.8 and what its sheet accepts; print it.",
+)
 @click.option("--force", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found and written as JSON; asks nothing.")
 def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:

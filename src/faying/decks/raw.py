@@ -178,13 +178,16 @@ def named_by(path: Path, name: str) -> Path:
     Where there is none, the one whose name differs in upper and lower case alone, as on file systems of Windows, which
     also write backslashes.
     """
-    there = path.parent / name
-    if "\0" in name or there.exists():
-        return there
-    there = path.parent
-    for step in Path(name.replace("\\", "/")).parts:
-        others = there.iterdir() if there.is_dir() and not (there / step).exists() else ()
-        there = next((one for one in others if one.name.lower() == step.lower()), there / step)
+    named = there = path.parent / name
+    try:
+        if "\0" in name or named.exists():
+            return named
+        there = path.parent
+        for step in Path(name.replace("\\", "/")).parts:
+            others = there.iterdir() if there.is_dir() and not (there / step).exists() else ()
+            there = next((one for one in others if one.name.lower() == step.lower()), there / step)
+    except OSError:  # the name is too long, or a folder may not be read
+        return named
     return there
 
 

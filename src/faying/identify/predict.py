@@ -143,11 +143,9 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
     """What a reader of the intervals ought to know."""
     out = [*cut_notes(found.inputs.columns), *part_test_notes(study)]
     choice = study.uncertain or UncertainChoice()
-    drawn = {one.key for one in choice.inputs}
-    flat = [
-        one.name for one in study.joints if one.form is None and f"joint.{one.name}.form.waviness_seed" not in drawn
-    ]
-    if flat and not choice.only:
+    drawn, seed = {one.key for one in choice.inputs}, "form.waviness_seed"
+    flat = [one.name for one in study.joints if one.form is None and f"joint.{one.name}.{seed}" not in drawn]
+    if flat and not choice.only and f"joint.{seed}" not in drawn:
         text = "no waves are drawn: the faces are curved, have no room for waves, or are seats of a solid bolt"
         out.append(Note(code="no-waves", text=f"{joint_names(flat)}: {text}"))
     for reason, count in found.reasons.items():

@@ -45,6 +45,8 @@ class Support:
             raise InputError(f"support of {self.face!r}: directions {list(self.directions)} should be some of x, y, z")
         if self.stiffness is not None and not self.stiffness > 0:
             raise InputError(f"support of {self.face!r}: stiffness {self.stiffness:g} Pa/m must be positive")
+        if self.edge == self.face:
+            raise InputError(f"support of {self.face!r}: edge names the same face; name the one that meets it there")
         if self.stiffness is not None and not self.whole:
             raise InputError(f"support of {self.face!r}: stiffness is per area; leave it out with edge or point")
 

@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from faying.columns import Cell, is_unit, split_heading
+from faying.columns import Cell, is_unit, plain_unit, split_heading
 from faying.errors import InputError, ReadError
 from faying.measured.frf import UNITS
 from faying.measured.uff_units import DIMENSIONS, unit_factor
@@ -51,6 +51,7 @@ class Pair:
         """Complex values (f,) in SI. Raises ReadError for a phase of so many turns that its digits are lost."""
         a, b = table[:, self.first], table[:, self.second]
         if not self.polar:
+            a, b = (np.where(np.isfinite(one), one, np.nan) for one in (a, b))
             return np.asarray(self.scales[0] * a + 1j * self.scales[1] * b)
         most = float(np.abs(self.turn * b).max(initial=0.0))
         if most > MAX_PHASE:
@@ -122,9 +123,10 @@ def read_layout(line: str, quantity: str, where: str) -> FrfColumns:
 def _with_unit(cell: Cell, units: tuple[str, ...]) -> Cell:
     """The cell with the unit that its last word is, as in "Frequency kHz", where it states none in brackets."""
     name, _, last = cell.text.rpartition(" ")
-    if cell.unit or not name or not any(is_unit(last, unit) for unit in units):
+    found, stated = plain_unit(last), set("[(") & set(cell.text) or cell.unit.lower().startswith("db")
+    if stated or not name or not any(is_unit(found, unit) for unit in units):
         return cell
-    return Cell(text=cell.text, name=name.lower(), unit=last)
+    return Cell(text=cell.text, name=name.lower(), unit=found)
 
 
 def _role(cell: Cell, where: str) -> str:
@@ -200,7 +202,7 @@ def _reference(text: str, cell: Cell, quantity: str, where: str, notes: list[str
         notes.append(f'{where}: "{cell.text}" states no reference; 0 dB is taken as 1 {UNITS[quantity]}')
         return 1.0
     factor = unit_factor(re.sub(r"\(1(\.0*)?\s+", "(", unit), DIMENSIONS[quantity] + "/N")
-    if factor is None:
+    if factor is None or times == 0:
         raise ReadError(
             f'{where}: "{cell.text}": "{bare}" is not a reference of {quantity}; write dB re 1 {DIMENSIONS[quantity]}/N'
         )

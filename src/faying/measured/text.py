@@ -17,6 +17,7 @@ from faying.measured.uff_units import DIMENSIONS
 from faying.typing import Array, Complex
 
 BOTH_PARTS = re.compile(r"\(\s*[-+]?[^-+\s]+(?:[eE][-+]?\d+)?\s*[-+]\s*[^-+\s]+(?:[eE][-+]?\d+)?[ij]\s*\)")
+NUMBER = re.compile(r"\(?[-+]?(\.?\d|(nan|inf)\b)", re.IGNORECASE)  # what a line of numbers begins with
 EVEN = 0.9  # share of steps that are alike, from which on a longer one is a gap
 
 
@@ -71,12 +72,12 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
     except OSError as fault:
         raise ReadError(f"{path}: cannot be read ({fault.strerror or fault})") from None
     numbered = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    start = next((k for k, (_, line) in enumerate(numbered) if re.match(r"\(?[-+]?\.?\d", line)), len(numbered))
+    start = next((k for k, (_, line) in enumerate(numbered) if re.match(NUMBER, line)), len(numbered))
     above = [(number, line) for number, line in numbered[:start] if line.strip("# ,;")]
     lines = [line for _, line in numbered[start:] if not line.startswith("#")]
     if len(lines) < 2:
         raise ReadError(f"{path}: no FRF in it; expected a complex number on each line, or frequency, real, imaginary")
-    if re.search(r"[\d.][ij]\b", lines[0]):
+    if re.search(r"([\d.]|nan|inf)[ij]\b", lines[0], re.I):
         _refuse_units(above, path)
         if step is None or not step > 0:
             raise InputError(
@@ -86,7 +87,7 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
         for line in lines:
             if set(line) & set("()") and not BOTH_PARTS.fullmatch(line):
                 raise ReadError(f"{path}: {line[:60]!r} is not a complex number of two parts, as (-0.07+2.6e-08j)")
-        values = [_number(complex, path, line.replace("i", "j").replace(" ", "").strip("()")) for line in lines]
+        values = [_number(complex, path, re.sub(r"i$", "j", line.replace(" ", "").strip("()"))) for line in lines]
         own = np.array([values], dtype=np.complex128)
         return np.arange(len(values), dtype=float) * step, own, np.full(own.shape, np.nan), ()
     for line in lines:

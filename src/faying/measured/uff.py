@@ -42,7 +42,7 @@ KINDS = {
     13: "cumulative distribution",
     22: "impulse response",
 }
-FRF_TYPE, OVER_TIME = 4, (1, 7, 8, 22)
+FRF_TYPE, COHERENCE_TYPE, OVER_TIME = 4, 6, (1, 7, 8, 22)
 GLOBAL = (0, 1)  # systems that a file need not define
 LINE = 6  # numbers in a line of data set 58
 OWN = (18, 2414)  # data sets that Faying reads itself
@@ -217,7 +217,8 @@ def _function(data: dict[str, Any], where: str) -> Function:
             f"{where}: {len(values)} values where its header announces {count}; the file is damaged or was cut short, "
             "export it again"
         )
-    moving = x != 0 if data["func_type"] == FRF_TYPE else np.full(len(x), True)  # `without_static` sees to 0 Hz
+    # `without_static` sees to 0 Hz
+    moving = x != 0 if data["func_type"] in (FRF_TYPE, COHERENCE_TYPE) else np.full(len(x), True)
     if not (np.all(np.isfinite(values[moving])) and np.all(np.isfinite(x))):
         raise ReadError(f"{where}: it has NaN or infinite values; measure or export that function again")
     if data["func_type"] in OVER_TIME and data["abscissa_spec_data_type"] == FREQUENCY:

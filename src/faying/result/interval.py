@@ -61,7 +61,7 @@ class Interval(Summary):
         room = np.sqrt(self._squares[of_parts].sum(axis=0)) / 2
         least, most = free * np.exp(self.moved - room), bonded * np.exp(self.moved + room)
         low, best, high = (between_by_rank(one, least, most) for one in (self.low, self.best, self.high))
-        return replace(self, low=low, best=best, high=high)
+        return replace(self, low=np.minimum(low, best), best=best, high=np.maximum(high, best))
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return 5 %, the best estimate and 95 % of each mode at the greatest preload."""

@@ -63,7 +63,7 @@ def fit_fractal(
 def fit_all(
     scan: AreaHeights | LineHeights, *, methods: Iterable[str] = tuple(METHODS), **options: Any
 ) -> dict[str, FractalFit | str]:
-    """Run every estimator, or some; where one fails its error text stands in place of the fit. Options as above."""
+    """Run estimators with options of `fit_fractal`; where one fails its error text stands in place of the fit."""
     out: dict[str, FractalFit | str] = {}
     for method in methods:
         try:

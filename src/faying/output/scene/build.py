@@ -205,7 +205,7 @@ def _supports(supports: Sequence[Support], by_name: dict[str, int]) -> tuple[Sce
     return tuple(
         SceneSupport(face=by_name[one.face], directions=one.directions, elastic=one.stiffness is not None)
         for one in supports
-        if one.face in by_name
+        if one.face in by_name and one.whole
     )
 
 

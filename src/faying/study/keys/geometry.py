@@ -1,13 +1,15 @@
 """The [geometry] table of a study: a STEP file to mesh, or a mesh file of another program."""
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from faying import cache
 from faying.decks.included import included
-from faying.errors import InputError
+from faying.errors import InputError, ReadError
 from faying.fe.mesh import Mesh
+from faying.geometry.cad import files_of
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import Selector, chosen, points_of
 from faying.study.declaration.declared import NAME, REQUIRED, WORDS, Declared, Inner, Key, listed
@@ -48,6 +50,9 @@ def read_geometry(top: Table) -> GeometryChoice:
     if "mesh" in table.data:
         return _meshed(table)
     step = table.get("step")
+    if step is not None:
+        with suppress(ReadError):  # the mesher says which one is missing
+            table.faults.files += files_of(step)[1:]
     size = table.get("size")
     sizes = _by_name(table, "face_size")
     faces = _faces(table)

@@ -193,7 +193,11 @@ def read(path: Path, how: TextLayout, scales: tuple[float, float, float], steps:
         spacing = None
         if how.across is not None:
             (ix, dx), (iy, dy) = _axis(np.array(how.across), path, "x"), _axis(data[:, 0], path, "y")
-            data, spacing = data[np.argsort(iy), 1:][:, np.argsort(ix)], (dx * x, dy * y)
+            if len(np.unique(ix)) < len(ix) or len(np.unique(iy)) < len(iy):
+                raise ReadError(f"{path}: two rows or two columns have one position; export the scan again")
+            heights = np.full((int(iy.max()) + 1, int(ix.max()) + 1), np.nan)  # a row that is left out stays empty
+            heights[iy[:, None], ix] = data[:, 1:]
+            data, spacing = heights, (dx * x, dy * y)
         elif how.size is None:
             _refuse_positions(path, data)
         else:
@@ -328,6 +332,8 @@ def _line(path: Path, data: Array, x: float, z: float) -> Profile:
     try:
         ix, dx = _axis(places, path, "x")
     except ReadError:
+        if np.ptp(np.sign(np.diff(data[:, 0]))):  # they go to and fro
+            raise
         return uneven_line(path, places * x, data[again, 1] * z)
     heights = np.full(int(ix.max()) + 1, np.nan)
     heights[ix] = data[again, 1]
