@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.errors import InputError
+from faying.fe.line import FACING, Line
 from faying.fe.overlap import overlap
 from faying.geometry.cad import ask_kernel, check_head, read_parts
 from faying.notes import Note
@@ -19,7 +20,6 @@ from faying.typing import Array, Index
 Point = tuple[float, float, float]
 FLAT = 1e-5  # of a face's size: how far its points lie from a plane that it counts as
 ROUND = 1e-4  # of the radius: how far they lie from a cylinder
-FACING = np.cos(np.deg2rad(1.0))  # faces that differ by less than a degree are parallel
 MAX_DISTANCE = 0.01  # of the size of the structure: faces farther apart do not belong together
 
 
@@ -62,6 +62,20 @@ class FaceFacts:
     def label(self) -> str:
         """The part and the number, for messages."""
         return f"{self.part} {self.number}"
+
+    @property
+    def side(self) -> tuple[str, int]:
+        """The part and the number."""
+        return self.part, self.number
+
+    @property
+    def line(self) -> Line:
+        """The axis of a cylinder, from where it begins."""
+        return Line(point=np.array(self.start), axis=np.array(self.axis))
+
+    def facing(self, direction: Array) -> float:
+        """Component of a direction (3,) along the outward normal of a plane; 0 for other kinds."""
+        return 0.0 if self.normal is None else float(np.array(self.normal) @ direction)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,7 +176,7 @@ class GeometryFacts(Summary):
         """Return one part, its faces and their contacts. Raises InputError where there is no such part."""
         if name not in self.by_part:
             raise InputError(f"no part is called {name!r}; the parts are {', '.join(map(repr, self.by_part))}")
-        contacts = tuple(c for c in self.contacts if name in (c.first[0], c.second[0]))
+        contacts = tuple(contact for contact in self.contacts if name in contact.parts)
         return replace(self.without([part.name for part in self.parts if part.name != name]), contacts=contacts)
 
     def to_dict(self) -> dict[str, Any]:
@@ -193,13 +207,17 @@ class GeometryFacts(Summary):
 
     def triangles(self, face: FaceFacts) -> Array:
         """Triangles (t, 3, 3) [m] of a face."""
-        return self._triangles[face.part, face.number]
+        return self._triangles[face.side]
+
+    def corners_of(self, part: str) -> Array:
+        """Triangles (t, 3, 3) [m] of all faces of a part."""
+        return np.concatenate([self.triangles(face) for face in self.by_part[part]])
 
     @cached_property
     def _triangles(self) -> dict[tuple[str, int], Array]:
         order = np.argsort(self.face_of, kind="stable")
         rows = np.split(order, np.cumsum(np.bincount(self.face_of, minlength=len(self.faces)))[:-1])
-        return {(face.part, face.number): self.corners[row] for face, row in zip(self.faces, rows, strict=True)}
+        return {face.side: self.corners[row] for face, row in zip(self.faces, rows, strict=True)}
 
     def without(self, parts: Container[str]) -> "GeometryFacts":
         """The same geometry with some parts left out."""
@@ -402,9 +420,7 @@ def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list
             least, own = min((one, rows[i]), (two, rows[j]), key=lambda pair: pair[0].area)
             area *= least.area / _area(corners[own])  # chords have less
             if area > 1e-6 * min(one.area, two.area):
-                out.append(
-                    TouchingFaces(first=(one.part, one.number), second=(two.part, two.number), area=area, gap=gap)
-                )
+                out.append(TouchingFaces(first=one.side, second=two.side, area=area, gap=gap))
     return sorted(out, key=lambda contact: -contact.area)
 
 
@@ -420,11 +436,9 @@ def _gap(one: FaceFacts, two: FaceFacts) -> float | None:
     hole, shaft = (one, two) if one.hole else (two, one)
     assert hole.radius is not None
     assert shaft.radius is not None
-    axis, arm = np.array(hole.axis), np.array(shaft.start) - np.array(hole.start)
-    aside = float(np.linalg.norm(arm - (arm @ axis) * axis))
-    if abs(axis @ np.array(shaft.axis)) < FACING or aside > abs(hole.radius - shaft.radius) + ROUND * hole.radius:
-        return None
     gap = hole.radius - shaft.radius
+    if not hole.line.holds(shaft.line, abs(gap) + ROUND * hole.radius):
+        return None
     return 0.0 if abs(gap) < ROUND * hole.radius else gap
 
 

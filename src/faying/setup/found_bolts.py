@@ -6,15 +6,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from faying.bolt.compliance import Head
-from faying.bolt.standards import COMMON, METRIC, is_tapped, metric, nearest_size, size_for_hole
+from faying.bolt.standards import COMMON, METRIC, is_tapped, metric, size_for_hole
 from faying.bolt.tapped import ENGAGED
 from faying.geometry.bores import Bore, Stack, room_around, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.seats import Countersink, countersink, lips
 from faying.setup.bolt_proposal import BoltProposal, to_nanometres
-from faying.setup.fastener_forms import DRAWN
-from faying.setup.fasteners import Fasteners, MeshedBolt, quoted
-from faying.setup.found_dowels import free_rows, like_dowel, size_of, takes_dowel
+from faying.setup.fasteners import Fasteners, quoted
+from faying.setup.found_dowels import like_dowel, size_of, takes_dowel
 from faying.typing import Array
 from faying.units import show
 
@@ -46,19 +45,24 @@ class LeftOut:
 
 
 def found_bolts(
-    facts: GeometryFacts, fasteners: Fasteners, joints: Sequence[TouchingFaces], out: LeftOut
+    facts: GeometryFacts,
+    fasteners: Fasteners,
+    free: Sequence[Stack],
+    joints: Sequence[TouchingFaces],
+    out: LeftOut,
 ) -> list[BoltProposal]:
     """The bolts of a geometry: parts that are bolts, bolts that are drawn, and rows of holes that take one.
 
     Args:
         facts: of the parts that are not left out.
-        fasteners: parts that are bolts.
+        fasteners: has the bodies that are bolts.
+        free: rows of holes in which nothing of the file runs.
         joints: the planes that touch.
         out: takes the rows of holes that have no bolt.
     """
-    found = [*(_meshed(facts, bolt) for bolt in fasteners.meshed), *fasteners.drawn]
+    found = [*fasteners.bolts]
     met = {side for contact in joints for side in contact.sides}
-    for stack in (one for row in free_rows(facts, fasteners) for one in _from_both_sides(row)):
+    for stack in (one for row in free for one in _from_both_sides(row)):
         if 2 * min(bore.radius for bore in stack.bores) > WIDEST or takes_dowel(facts, stack):
             continue  # a pipe, a bearing, or a dowel
         bolt = _in_slot(facts, stack) or (_in_row(facts, stack, out) if len(stack.bores) > 1 else None)
@@ -91,23 +95,6 @@ def _from_both_sides(stack: Stack) -> list[Stack]:
     return [stack]
 
 
-def _meshed(facts: GeometryFacts, bolt: MeshedBolt) -> BoltProposal:
-    assert bolt.shank.radius is not None
-    size = nearest_size(2e3 * bolt.shank.radius, lambda one: one.size, DRAWN)
-    clamped = {part for contact in facts.contacts if bolt.part in contact.parts for part in contact.parts}
-    return BoltProposal(
-        axis=np.array(bolt.shank.axis),
-        parts=tuple(sorted(clamped - {bolt.part})),
-        head=(bolt.head,),
-        end=(bolt.nut,),
-        words=("head", "nut"),
-        size=size,
-        part=bolt.part,
-        remark=f"the part {bolt.part!r} is the bolt"
-        + "; it has no play: if it is a rivet, give the force that it was set with" * bolt.tight,
-    )
-
-
 def _opens(facts: GeometryFacts, bore: Bore, met: set[tuple[str, int]]) -> bool:
     """Whether a clearance hole ends at a face that another part touches."""
     near = {other for number in bore.faces for other in facts.face(bore.part, number).neighbours}
@@ -121,15 +108,13 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> BoltProposal | None:
     if sizes or size is None:
         return None
     hole = 2 * max(bore.radius for bore in stack.bores)
-    outer = _washer(size)
-    ends = {True: stack.ends[1], False: stack.ends[0]}
-    for top, bore in ends.items():
-        found = lips(facts, bore, top=top, shank=size / 1e3, ring=(hole, outer))
-        under = seat(facts, ends[not top], top=not top) if found else None
-        if not found or under is None:
+    for top in (True, False):
+        bore, other = stack.ends[top], stack.ends[not top]
+        found = lips(facts, bore, top=top, shank=size / 1e3, ring=(hole, _washer(size)))
+        under = seat(facts, other, top=not top) if found else None
+        if under is None:
             continue
-        room = 2 * CHORDS * room_around(facts, under, ends[not top])
-        outer, why = _outer(size, room)
+        outer, why, shape = _pressed_ring(size, room_around(facts, under, other))
         owner = found[0].part
         return BoltProposal(
             axis=stack.axis,
@@ -140,11 +125,9 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> BoltProposal | None:
             size=size,
             at=to_nanometres(stack.middle),
             ring=(round(hole, 9), outer),
-            shape=_shape(size, outer),
-            remark=(
-                f"M{size:g} for a hole of {show(hole, 'm')} (ISO 273), in a T-slot of {owner!r}; "
-                f"seats: from the hole to the diameter {why}, on the lips as far as they reach"
-            ),
+            shape=shape,
+            remark=f"M{size:g} for a hole of {show(hole, 'm')} (ISO 273), in a T-slot of {owner!r}; "
+            f"seats: from the hole to the diameter {why}, on the lips as far as they reach",
         )
     return None
 
@@ -152,34 +135,27 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> BoltProposal | None:
 def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> BoltProposal | None:
     """The bolt of a row of holes through several parts; None, noted in `out`, where none fits."""
     found = size_of(stack)
-    low, high = stack.ends
-    ends = seat(facts, low, top=False), seat(facts, high, top=True)
     if found is None:
         out.add(stack, "are clearance holes of no common bolt (M3 to M24, ISO 273): left out")
         return None
     size, tapped = found
-    sunk: dict[bool, Countersink] = {}
-    for top, bore in ((False, low), (True, high)):
-        cone = countersink(facts, bore, top=top)
-        if cone is not None and 1e3 * cone.outer >= SUNK * size:
-            sunk[top] = cone
+    seats = [seat(facts, bore, top=bool(top)) for top, bore in enumerate(stack.ends)]
+    cones = [countersink(facts, bore, top=bool(top)) for top, bore in enumerate(stack.ends)]
+    sunk = [cone if cone is not None and 1e3 * cone.outer >= SUNK * size else None for cone in cones]
     if tapped is not None:
-        end, top = (high, True) if tapped is low else (low, False)
-        under = seat(facts, end, top=top)
-        if top in sunk:
-            return _screw(facts, stack, (end, sunk[top].faces), tapped, size, sunk[top].outer)
-        if under is not None:
-            return _screw(facts, stack, (end, (under,)), tapped, size, None)
-        out.add(stack, "have no flat face for a head: left out")
-        return None
-    for top, cone in sunk.items():
-        nut = ends[not top]
-        if nut is not None:
-            return _sunk(stack, cone.faces, nut, size, cone.outer)
-    if ends[0] is None or ends[1] is None:
+        top = tapped is stack.ends[0]
+        under = sunk[top] or seats[top]
+        if under is None:
+            out.add(stack, "have no flat face for a head: left out")
+            return None
+        return _screw(facts, stack, stack.ends[top], under, tapped, size)
+    for cone, nut in zip(sunk, reversed(seats), strict=True):
+        if cone is not None and nut is not None:
+            return _sunk(stack, cone, nut, size)
+    if seats[0] is None or seats[1] is None:
         out.add(stack, "have no flat face for head or nut at an end (a blind hole?): left out")
         return None
-    return _through(facts, stack, (ends[0], ends[1]), size)
+    return _through(facts, stack, (seats[0], seats[1]), size)
 
 
 def _washer(size: float) -> float:
@@ -193,78 +169,69 @@ def _socket(size: float) -> float:
     return round(1e-3 * (metric(size).socket or size), 9)
 
 
-def _shape(size: float, outer: float) -> Head:
-    """The head of a bolt whose seat has an outer diameter [m] of `_outer`."""
-    return "hexagon" if outer == _washer(size) else "socket"
+def _pressed_ring(size: float, edge: float) -> tuple[float, str, Head]:
+    """Outer diameter [m] of the seat of a bolt of a size [mm], where it is from, and the head of the bolt.
 
-
-def _outer(size: float, room: float) -> tuple[float, str]:
-    """Outer diameter [m] of the seat of a bolt of a size [mm] in a room [m] around its axis, and where it is from."""
-    washer, head = _washer(size), _socket(size)
-    outer, why = (washer, "of its washer, ISO 7089") if washer <= room else (head, "of its head, ISO 4762")
-    if outer > room:
-        why += f", although the face ends {show(room / 2, 'm')} from the axis"
-    return outer, why
+    edge: how far the nearest edge of the face is from the axis, by chords [m].
+    """
+    room = 2 * CHORDS * edge
+    if _washer(size) <= room:
+        return _washer(size), "of its washer, ISO 7089", "hexagon"
+    less = "" if _socket(size) <= room else f", although the face ends {show(room / 2, 'm')} from the axis"
+    return _socket(size), f"of its head, ISO 4762{less}", "socket"
 
 
 def _screw(
-    facts: GeometryFacts,
-    stack: Stack,
-    head: tuple[Bore, tuple[FaceFacts, ...]],
-    tapped: Bore,
-    size: float,
-    sunk: float | None,
+    facts: GeometryFacts, stack: Stack, bore: Bore, under: Countersink | FaceFacts, tapped: Bore, size: float
 ) -> BoltProposal:
-    """A screw into a tapped hole; head: the hole under its head, and the faces that it presses; sunk: as of `_sunk`."""
-    bore, under = head
-    why = "seat: from the hole to the diameter of its head, ISO 4762" if sunk is None else "a countersunk head"
+    """A screw into a tapped hole; bore, under: the hole under its head, and what it presses there."""
+    sunk = isinstance(under, Countersink)
+    why = "a countersunk head" if sunk else "seat: from the hole to the diameter of its head, ISO 4762"
     return BoltProposal(
         axis=stack.axis,
         parts=stack.parts,
-        head=under,
+        head=under.faces if isinstance(under, Countersink) else (under,),
         end=tuple(facts.face(tapped.part, number) for number in tapped.faces),
-        words=("seat" if sunk is None else "countersink", "thread"),
+        words=("countersink" if sunk else "seat", "thread"),
         size=size,
-        ring=(round(2 * bore.radius, 9), _socket(size) if sunk is None else round(sunk, 9)),
-        shape="hexagon" if sunk is not None else "socket",
-        remark=(
-            f"M{size:g} for {_hole(bore)} (ISO 273), screwed into the hole of "
-            f"{show(2 * tapped.radius, 'm')} in {tapped.part!r}; {why}"
-        ),
+        ring=(round(2 * bore.radius, 9), round(under.outer, 9) if isinstance(under, Countersink) else _socket(size)),
+        shape="hexagon" if sunk else "socket",
+        remark=f"M{size:g} for {_hole(bore)} (ISO 273), screwed into the hole of {show(2 * tapped.radius, 'm')} "
+        f"in {tapped.part!r}; {why}",
     )
 
 
-def _sunk(stack: Stack, cone: tuple[FaceFacts, ...], nut: FaceFacts, size: float, outer: float) -> BoltProposal:
-    """A countersunk screw with a nut; outer: diameter [m] at the wide end of the cone."""
+def _sunk(stack: Stack, cone: Countersink, nut: FaceFacts, size: float) -> BoltProposal:
+    """A countersunk screw with a nut."""
     hole = 2 * min(bore.radius for bore in stack.bores)
     return BoltProposal(
         axis=stack.axis,
         parts=stack.parts,
-        head=cone,
+        head=cone.faces,
         end=(nut,),
         words=("countersink", "seat"),
         size=size,
         at=to_nanometres(stack.middle),
-        ring=(round(hole, 9), round(outer, 9)),
+        ring=(round(hole, 9), round(cone.outer, 9)),
         remark=f"M{size:g} for a hole of {show(hole, 'm')} (ISO 273); countersunk head, and a nut on a ring as wide",
     )
 
 
-def _through(facts: GeometryFacts, stack: Stack, ends: tuple[FaceFacts, FaceFacts], size: float) -> BoltProposal:
-    last = stack.ends
-    widest = max(last, key=lambda bore: (bore.slot is not None, bore.radius))
-    room = 2 * CHORDS * min(room_around(facts, end, bore) for end, bore in zip(ends, last, strict=True))
-    outer, why = _outer(size, room)
+def _through(facts: GeometryFacts, stack: Stack, seats: tuple[FaceFacts, FaceFacts], size: float) -> BoltProposal:
+    """A bolt with a nut."""
+    widest = max(stack.ends, key=lambda bore: (bore.slot is not None, bore.radius))
+    edge = min(room_around(facts, face, bore) for face, bore in zip(seats, stack.ends, strict=True))
+    outer, why, shape = _pressed_ring(size, edge)
     pin = "" if not like_dowel(stack) else "; if the holes are those of a dowel, give a [[dowel]] in its place"
     return BoltProposal(
         axis=stack.axis,
         parts=stack.parts,
-        head=(ends[0],),
-        end=(ends[1],),
+        head=(seats[0],),
+        end=(seats[1],),
         size=size,
         at=to_nanometres(stack.middle),
         ring=(round(2 * widest.radius, 9), outer),
-        shape=_shape(size, outer),
+        shape=shape,
         remark=f"M{size:g} for {_hole(widest)} (ISO 273); seat: from the hole to the diameter {why}{pin}",
     )
 

@@ -19,7 +19,7 @@ from faying.setup.bolt_names import grouped
 from faying.setup.bolt_proposal import GRADE, BoltProposal
 from faying.setup.edit import written as quoted
 from faying.setup.faces import faces
-from faying.setup.found_dowels import DowelProposal
+from faying.setup.fasteners import DowelProposal
 from faying.setup.mesh_proposal import propose_mesh
 from faying.setup.proposal import Proposal, propose
 from faying.setup.template import SCHEMA, surface

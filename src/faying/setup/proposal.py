@@ -13,9 +13,9 @@ from faying.memory import available
 from faying.setup.bolt_proposal import BoltProposal, rounded
 from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
-from faying.setup.fasteners import find_fasteners, quoted
+from faying.setup.fasteners import DowelProposal, find_fasteners, quoted
 from faying.setup.found_bolts import LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
-from faying.setup.found_dowels import DowelProposal, found_dowels
+from faying.setup.found_dowels import found_dowels, free_rows
 from faying.units import show
 
 ROOM = 0.7  # of the free memory that a proposed run takes, whose unknowns are an estimate
@@ -94,7 +94,8 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     facts = facts.without(alone)
     contacts = touching(facts)
     left = LeftOut()
-    bolts = found_bolts(facts, fasteners, contacts, left)
+    free = free_rows(facts, fasteners)
+    bolts = found_bolts(facts, fasteners, free, contacts, left)
     apart = _apart(facts, contacts, bolts)
     aside = shoulders(facts, contacts, bolts)
     contacts = [contact for contact in contacts if contact not in aside and contact not in apart]
@@ -122,13 +123,12 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         )
         for k, bolt in enumerate(bolts, 1)
     )
-    dowels = found_dowels(facts, fasteners, names)
     return Proposal(
         facts=facts,
         faces=names.selectors,
         joints=joints,
         bolts=named_bolts,
-        dowels=dowels,
+        dowels=found_dowels(facts, fasteners, free, names),
         size=size,
         snap=snap,
         left_out=(*fasteners.left_out, *alone),
