@@ -6,7 +6,7 @@ from math import floor, log10
 import numpy as np
 
 from faying.bolt.compliance import Head
-from faying.bolt.threads import STRENGTH_THICK, Fastener, Thread, is_graded
+from faying.bolt.threads import THICK_CLASS, Fastener, Thread, is_graded
 from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
 from faying.bolt.vdi2230 import greatest_preload
 from faying.geometry.face_facts import FaceFacts, Point
@@ -83,7 +83,7 @@ class BoltProposal:
         if self.size is None:
             return None
         thread = Thread.coarse(self.size * 1e-3)
-        strength = Fastener(thread=thread, grade=GRADE).yield_stress if self.graded else STRENGTH_THICK[1]
+        strength = Fastener(thread=thread, grade=GRADE).yield_stress if self.graded else THICK_CLASS[1]
         return rounded(greatest_preload(thread, strength, scatter=TIGHTENING[DEFAULT_WAY].scatter), 3, up=False)
 
     @property

@@ -1,7 +1,7 @@
 """Bolts that the holes of a geometry ask for: through bolts, screws, countersunk screws, bolts in T-slots."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,54 +23,36 @@ SUNK = 1.6  # nominal diameters from which a cone at the mouth of a hole is a co
 PLACES = 3  # rows of holes whose places a remark says
 
 
-@dataclass
-class LeftOut:
-    """Rows of holes that take no bolt: why, with the places [m] of all for which the same is to be said."""
-
-    places: dict[tuple[str, str], list[Array]] = field(default_factory=dict)
-
-    def add(self, stack: Stack, why: str) -> None:
-        """Note a row of holes."""
-        widths = ", ".join(f"{2e3 * bore.radius:.4g} mm in {bore.part!r}" for bore in stack.bores)
-        self.places.setdefault((widths, why), []).append(stack.middle)
-
-    @property
-    def remarks(self) -> Iterator[str]:
-        """One line for all that are alike."""
-        for (widths, why), places in self.places.items():
-            where = ", ".join(f"({', '.join(f'{1e3 * x:.4g}' for x in place)})" for place in places[:PLACES])
-            more = f" and {len(places) - PLACES} more" if len(places) > PLACES else ""
-            many = f"{len(places)} rows of holes" if len(places) > 1 else "holes"
-            yield f"{many} about {where}{more} mm ({widths}) {why}"
-
-
 def found_bolts(
-    facts: GeometryFacts,
-    fasteners: Fasteners,
-    free: Sequence[Stack],
-    joints: Sequence[TouchingFaces],
-    out: LeftOut,
-) -> list[BoltProposal]:
-    """The bolts of a geometry: parts that are bolts, bolts that are drawn, and rows of holes that take one.
+    facts: GeometryFacts, fasteners: Fasteners, free: Sequence[Stack], joints: Sequence[TouchingFaces]
+) -> tuple[list[BoltProposal], list[str]]:
+    """The bolts of a geometry, bodies and those of rows of holes; and what there is to say of rows that take none.
 
     Args:
         facts: of the parts that are not left out.
         fasteners: has the bodies that are bolts.
         free: rows of holes in which nothing of the file runs.
         joints: the planes that touch.
-        out: takes the rows of holes that have no bolt.
     """
     found = [*fasteners.bolts]
+    left: dict[tuple[str, str], list[Array]] = {}  # what is to be said of rows of holes -> their places [m]
     met = {side for contact in joints for side in contact.sides}
     for stack in (one for row in free for one in _from_both_sides(row)):
         if 2 * min(bore.radius for bore in stack.bores) > WIDEST or takes_dowel(facts, stack):
             continue  # a pipe, a bearing, or a dowel
-        bolt = _in_slot(facts, stack) or (_in_row(facts, stack, out) if len(stack.bores) > 1 else None)
-        if bolt is not None:
+        bolt = _in_slot(facts, stack) or (_in_row(facts, stack) if len(stack.bores) > 1 else _alone(facts, stack, met))
+        if isinstance(bolt, str):
+            widths = ", ".join(f"{2e3 * bore.radius:.4g} mm in {bore.part!r}" for bore in stack.bores)
+            left.setdefault((widths, bolt), []).append(stack.middle)
+        elif bolt is not None:
             found.append(bolt)
-        elif len(stack.bores) == 1 and _opens(facts, stack.bores[0], met):
-            out.add(stack, "end at a joint, where no hole and no slot of another part takes a bolt: left out")
-    return [_in_shared_thread(bolt, found) for bolt in found]
+    remarks = []
+    for (widths, why), places in left.items():
+        where = ", ".join(f"({', '.join(f'{1e3 * x:.4g}' for x in place)})" for place in places[:PLACES])
+        more = f" and {len(places) - PLACES} more" if len(places) > PLACES else ""
+        many = f"{len(places)} rows of holes" if len(places) > 1 else "holes"
+        remarks.append(f"{many} about {where}{more} mm ({widths}) {why}: left out")
+    return [_in_shared_thread(bolt, found) for bolt in found], remarks
 
 
 def _in_shared_thread(bolt: BoltProposal, found: Sequence[BoltProposal]) -> BoltProposal:
@@ -95,10 +77,13 @@ def _from_both_sides(stack: Stack) -> list[Stack]:
     return [stack]
 
 
-def _opens(facts: GeometryFacts, bore: Bore, met: set[tuple[str, int]]) -> bool:
-    """Whether a clearance hole ends at a face that another part touches."""
+def _alone(facts: GeometryFacts, stack: Stack, met: set[tuple[str, int]]) -> str | None:
+    """What is to be said of a single clearance hole that ends at a face which another part touches."""
+    (bore,) = stack.bores
     near = {other for number in bore.faces for other in facts.face(bore.part, number).neighbours}
-    return size_for_hole(2 * bore.radius) is not None and any((bore.part, number) in met for number in near)
+    if size_for_hole(2 * bore.radius) is None or not any((bore.part, number) in met for number in near):
+        return None
+    return "end at a joint, where no hole and no slot of another part takes a bolt"
 
 
 def _in_slot(facts: GeometryFacts, stack: Stack) -> BoltProposal | None:
@@ -132,12 +117,11 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> BoltProposal | None:
     return None
 
 
-def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> BoltProposal | None:
-    """The bolt of a row of holes through several parts; None, noted in `out`, where none fits."""
+def _in_row(facts: GeometryFacts, stack: Stack) -> BoltProposal | str:
+    """The bolt of a row of holes through several parts; why there is none, where none fits."""
     found = size_of(stack)
     if found is None:
-        out.add(stack, "are clearance holes of no common bolt (M3 to M24, ISO 273): left out")
-        return None
+        return "are clearance holes of no common bolt (M3 to M24, ISO 273)"
     size, tapped = found
     seats = [seat(facts, bore, top=bool(top)) for top, bore in enumerate(stack.ends)]
     cones = [countersink(facts, bore, top=bool(top)) for top, bore in enumerate(stack.ends)]
@@ -146,15 +130,13 @@ def _in_row(facts: GeometryFacts, stack: Stack, out: LeftOut) -> BoltProposal | 
         top = tapped is stack.ends[0]
         under = sunk[top] or seats[top]
         if under is None:
-            out.add(stack, "have no flat face for a head: left out")
-            return None
+            return "have no flat face for a head"
         return _screw(facts, stack, stack.ends[top], under, tapped, size)
     for cone, nut in zip(sunk, reversed(seats), strict=True):
         if cone is not None and nut is not None:
             return _sunk(stack, cone, nut, size)
     if seats[0] is None or seats[1] is None:
-        out.add(stack, "have no flat face for head or nut at an end (a blind hole?): left out")
-        return None
+        return "have no flat face for head or nut at an end (a blind hole?)"
     return _through(facts, stack, (seats[0], seats[1]), size)
 
 

@@ -14,7 +14,7 @@ from faying.setup.bolt_proposal import BoltProposal, rounded
 from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import DowelProposal, find_fasteners, quoted
-from faying.setup.found_bolts import LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
+from faying.setup.found_bolts import clamped_along, found_bolts, shoulder_remark, shoulders
 from faying.setup.found_dowels import found_dowels, free_rows
 from faying.units import show
 
@@ -93,9 +93,8 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     alone = _alone(facts, path)
     facts = facts.without(alone)
     contacts = touching(facts)
-    left = LeftOut()
     free = free_rows(facts, fasteners)
-    bolts = found_bolts(facts, fasteners, free, contacts, left)
+    bolts, left = found_bolts(facts, fasteners, free, contacts)
     apart = _apart(facts, contacts, bolts)
     aside = shoulders(facts, contacts, bolts)
     contacts = [contact for contact in contacts if contact not in aside and contact not in apart]
@@ -110,7 +109,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         text = f"{len(apart)} pairs of faces up to {gap} apart, which no bolt closes, are not joints: left out; add a "
         remarks.append(text + "[[joint]] if they do meet")
     remarks += [shoulder_remark(aside)] if aside else []
-    remarks += left.remarks
+    remarks += left
     if not bolts:
         remarks.append("no bolt was found: fill in [[bolt]] by hand before you run the study")
     size, words = mesh_size(facts, {*(bolt.part for bolt in bolts), *fasteners.washers})
