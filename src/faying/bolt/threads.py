@@ -96,10 +96,8 @@ class Thread:
     @property
     def is_coarse(self) -> bool:
         """Whether this is a coarse thread of ISO 261."""
-        return any(
-            isclose(1e3 * self.diameter, one.size, rel_tol=1e-9) and isclose(1e3 * self.pitch, one.pitch, rel_tol=1e-9)
-            for one in METRIC.values()
-        )
+        coarse = [one.pitch for one in METRIC.values() if isclose(1e3 * self.diameter, one.size, rel_tol=1e-9)]
+        return any(isclose(1e3 * self.pitch, pitch, rel_tol=1e-9) for pitch in coarse)
 
     @property
     def pitch_diameter(self) -> float:

@@ -39,7 +39,9 @@ class Line:
         """Whether another line is this one, no farther away than `aside` [m]."""
         return bool(abs(self.axis @ line.axis) >= FACING and self.aside(line.point) <= aside)
 
-    @property
-    def reversed(self) -> "Line":
-        """The same the other way."""
-        return Line(point=self.point, axis=-self.axis)
+
+def across(axis: Array) -> Array:
+    """Two unit directions (3, 2) across an axis."""
+    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    one /= np.linalg.norm(one)
+    return np.stack([one, np.cross(axis, one)], axis=1)

@@ -157,10 +157,26 @@ class GeometryFacts(Summary):
     faces: tuple[FaceFacts, ...]
     contacts: tuple[TouchingFaces, ...]
     distances: dict[str, list[float]]
-    overlaps: tuple[str, ...]
-    notes: tuple[Note, ...]
+    overlaps: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     corners: Array
     face_of: Index
+
+    @classmethod
+    def of(
+        cls,
+        parts: Sequence[PartFacts],
+        faces: Sequence[FaceFacts],
+        triangles: Sequence[Array],
+        *,
+        touching: bool = True,
+        **rest: Any,
+    ) -> "GeometryFacts":
+        """The facts of parts and of faces with their triangles (t, 3, 3) [m]; touching: whether contacts are sought."""
+        corners = np.concatenate([np.zeros((0, 3, 3)), *triangles])
+        face_of = np.repeat(np.arange(len(faces)), np.array([len(one) for one in triangles], dtype=np.int64))
+        met = tuple(contacts(faces, corners, face_of)) if touching and len(corners) else ()
+        return cls(parts=tuple(parts), faces=tuple(faces), contacts=met, corners=corners, face_of=face_of, **rest)
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return what the geometry consists of, and the size of each part."""
@@ -282,7 +298,7 @@ def facts_of(
 ) -> GeometryFacts:
     """The facts of solids [mm] in this process, which has the kernel; touching: whether contacts are sought."""
     faces: list[FaceFacts] = []
-    parts, corners, owner = [], [], []
+    parts, triangles = [], []
     for solid, name in zip(solids, names, strict=True):
         solid_faces = list(solid.faces)
         low, high = (1e-3 * np.array([*end]) for end in solid.bounding_box)  # before there are triangles, it is exact
@@ -299,34 +315,23 @@ def facts_of(
                     number=k + 1,
                     name=face.name or "",
                     area=1e-6 * face.mass,
-                    centre=_point(centre),
+                    centre=point_of(centre),
                     neighbours=near,
                     **shape,
                 )
             )
-            corners.append(tris[mine])
-            owner.append(np.full(np.count_nonzero(mine), len(faces) - 1))
-        box = {"low": _point(np.round(low, 9)), "high": _point(np.round(high, 9))}  # the kernel's has a margin
+            triangles.append(tris[mine])
+        box = {"low": point_of(np.round(low, 9)), "high": point_of(np.round(high, 9))}  # the kernel's has a margin
         parts.append(
             PartFacts(name=name, volume=1e-9 * solid.mass, area=1e-6 * sum(f.mass for f in solid_faces), **box)
         )
-    places, face_of = np.concatenate(corners), np.concatenate(owner)
     distances = {label: _distances(label, part, at, solids, names) for label, (part, at) in points.items()}
-    return GeometryFacts(
-        file=file,
-        parts=tuple(parts),
-        faces=tuple(faces),
-        contacts=tuple(contacts(faces, places, face_of)) if touching else (),
-        distances=distances,
-        overlaps=(),
-        notes=(),
-        corners=places,
-        face_of=face_of,
-    )
+    return GeometryFacts.of(parts, faces, triangles, touching=touching, file=file, distances=distances)
 
 
-def _point(values: Any) -> Point:
-    x, y, z = (round(float(v), 12) + 0.0 for v in values)  # what is less is rounding
+def point_of(values: Any, digits: int = 12) -> Point:
+    """A point or a direction (3,) to so many digits: what is less is rounding."""
+    x, y, z = (round(float(v), digits) + 0.0 for v in values)
     return x, y, z
 
 
@@ -361,7 +366,7 @@ def shape_of(corners: Array, normals: Array, area: float) -> dict[str, Any]:
     if length > 0:
         normal = total / length
         if np.ptp(points @ normal) < FLAT * np.sqrt(area):
-            return {"kind": "plane", "normal": _point(normal)}
+            return {"kind": "plane", "normal": point_of(normal)}
     weight = np.repeat(np.linalg.norm(cross, axis=1), 3)
     across = normals.reshape(-1, 3)
     spread, turn = np.linalg.eigh(np.einsum("p,pi,pj->ij", weight, across, across) / weight.sum())
@@ -385,8 +390,8 @@ def shape_of(corners: Array, normals: Array, area: float) -> dict[str, Any]:
     return {
         "kind": "cylinder",
         "radius": radius,
-        "axis": _point(axis),
-        "start": _point(start),
+        "axis": point_of(axis),
+        "start": point_of(start),
         "length": extent,
         "turn": min(area / (2 * np.pi * radius * extent), 1.0) if extent else 0.0,
         "hole": bool(outwards.mean() < 0),

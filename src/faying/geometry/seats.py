@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.fe.line import FACING, Line
+from faying.fe.line import FACING, Line, across
 from faying.geometry.bores import FULL_TURN, LEVEL, Bore
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
-from faying.geometry.seen_along import across, circle, hits
+from faying.geometry.seen_along import circle, hits
 
 CONE = 1e-3  # of the radius: how far the points of a face lie from a cone that it counts as
 FARTHEST = 4.0  # outer diameters of a seat beyond the end of a bore, up to which lips are sought

@@ -1,6 +1,6 @@
 """Bolts that a geometry shows as bodies: a screw or stud with its nuts and washers, what it clamps, where it ends."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 from math import pi
@@ -65,10 +65,6 @@ class _Row:
         nuts = self.nuts(end)
         return [ring for ring in self.rings[end] if ring not in nuts]
 
-    def both(self, some: Callable[[int], list[FastenerForm]]) -> list[FastenerForm]:
-        """The nuts, or the washers, of both ends."""
-        return [*some(0), *some(1)]
-
 
 def drawn_bolts(facts: GeometryFacts, found: Sequence[FastenerForm], solid: Iterable[str]) -> list[BoltProposal]:
     """The bolts whose bodies are drawn.
@@ -88,7 +84,8 @@ def drawn_bolts(facts: GeometryFacts, found: Sequence[FastenerForm], solid: Iter
 
 def _row(stem: FastenerForm, line: Line, rings: Sequence[FastenerForm], holes: Sequence[Bore]) -> _Row | None:
     """A stem with its holes, nuts and washers; None where it has no holes or ends."""
-    low, high = line.span(stem.line, *stem.stem)
+    tubes = [line.span(stem.line, start, end) for _, start, end in stem.stems]
+    low, high = min(start for start, _ in tubes), max(end for _, end in tubes)
 
     def span(body: Bore | FastenerForm) -> tuple[float, float]:
         return line.span(body.line, body.low, body.high)
@@ -117,7 +114,7 @@ def _row(stem: FastenerForm, line: Line, rings: Sequence[FastenerForm], holes: S
     row = _Row(stem=stem, line=line, bores=tuple(inside), rings=(before, behind))
     has_head = stem.head or row.nuts(0)
     if line is stem.line and (stem.head > 0 or (not has_head and row.nuts(1))):
-        return _row(stem, line.reversed, rings, holes)
+        return _row(stem, Line(point=line.point, axis=-line.axis), rings, holes)
     return row if has_head else None
 
 
@@ -138,7 +135,8 @@ def _bolt(facts: GeometryFacts, row: _Row) -> BoltProposal | None:
         return None
     ends = (0,) if tapped else (0, 1)
     outer = min(_outer(row, side, size) for side in ends) if cone is None else min(cone.outer, 2 * stem.reach)
-    inner = max(_inner(row, side) for side in ends)
+    first = [washer.radius for side in ends for washer in row.washers(side)[:1]]
+    inner = 2 * max([*((row.bores[0], row.last)[side].radius for side in ends), *first])
     if inner >= outer:
         return None
     at = (_depth(row, head), _depth(row, end))
@@ -147,7 +145,7 @@ def _bolt(facts: GeometryFacts, row: _Row) -> BoltProposal | None:
         mouth, bottom = row.span(row.last)
         engaged = bottom + min(row.past, 0.0) - mouth
         length = mouth - at[0] + min(INSIDE * 1e-3 * size, engaged)
-    washers = row.both(row.washers)
+    volumes, washers = _volumes(row, size, at[0], length), row.washers(0) + row.washers(1)
     parts = dict.fromkeys((*(bore.part for bore in row.bores), *(face.part for face in (*head, *end))))
     return BoltProposal(
         axis=row.line.axis,
@@ -161,11 +159,10 @@ def _bolt(facts: GeometryFacts, row: _Row) -> BoltProposal | None:
         shape=stem.shape,
         engaged=None if engaged is None else round(engaged, 9),
         drawn=DrawnBodies(
-            names=(stem.part, *(form.part for form in (*row.both(row.nuts), *washers))),
+            names=(stem.part, *(form.part for form in (*row.nuts(0), *row.nuts(1), *washers))),
             washers=tuple((round(w.diameter, 9), round(2 * w.reach, 9), round(w.length, 9)) for w in washers),
             shank=_plain(row, at[0], mouth if tapped else at[1]),
-            volumes=_volumes(row, size, at[0], length),
-            has_end=tapped or bool(row.nuts(1)),
+            volumes=(volumes[0], volumes[1] if tapped or row.nuts(1) else None),
             holes=frozenset(side for bore in row.bores for side in bore.sides),
         ),
         remark=_remark(row, size, tapped, engaged),
@@ -217,12 +214,6 @@ def _outer(row: _Row, end: int, size: float) -> float:
     return bearing.outer if bearing is not None else 1e-3 * (metric(size).flats or 1.5 * size)
 
 
-def _inner(row: _Row, end: int) -> float:
-    """Inner diameter [m] of the ring that is pressed there."""
-    hole = 2 * (row.bores[0] if end == 0 else row.last).radius
-    return max([hole, *(washer.diameter for washer in row.washers(end)[:1])])
-
-
 def _depth(row: _Row, faces: Sequence[FaceFacts]) -> float:
     """Depth [m] of the middle of faces that are pressed, where a bolt takes its seat to be."""
     depths = row.line.about(np.array([face.centre for face in faces]))[1]
@@ -251,9 +242,9 @@ def _remark(row: _Row, size: float, tapped: bool, engaged: float | None) -> str:
     stem, one = row.stem, metric(size)
     head = "stud" if not stem.head else f"screw with a {_head_words(row)}"
     words = [f"M{size:g} by the part {stem.part!r}, a {head}"]
-    nuts = [*row.nuts(0), *row.nuts(1)]
+    nuts = row.nuts(0) + row.nuts(1)
     words += [f"nut {nut.part!r}" for nut in nuts]
-    for washer in (*row.washers(0), *row.washers(1)):
+    for washer in row.washers(0) + row.washers(1):
         kind = "spring washer" if washer.split else "washer"
         words.append(
             f"{kind} {washer.part!r} of {show(2 * washer.reach, 'm')}" + "; it counts as closed" * washer.split

@@ -10,10 +10,10 @@ import numpy as np
 
 from faying.bolt.compliance import Head
 from faying.bolt.standards import METRIC, is_tapped, nearest_size
-from faying.fe.line import FACING, Line
+from faying.fe.line import FACING, Line, across
 from faying.geometry.bores import Bore, tubes
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
-from faying.geometry.seen_along import across, hits
+from faying.geometry.seen_along import hits
 
 SLENDER = 3.0  # radii of its stem, beyond which a body with a stem is no fastener, but a spigot, say
 STEM = 1.4  # over the narrowest stem, up to which a cylinder is a stem, too: nominal over core diameter of M1.6 is 1.37
@@ -91,11 +91,6 @@ class FastenerForm:
         return self.line.holds(body.line, APART * self.radius + play)
 
     @property
-    def stem(self) -> tuple[float, float]:
-        """Where the stem, or the hole of a ring, begins and ends."""
-        return min(low for _, low, _ in self.stems), max(high for _, _, high in self.stems)
-
-    @property
     def is_washer(self) -> bool:
         """Whether it is a flat ring about a hole."""
         flat = self.length <= THIN * self.diameter and self.reach <= LARGE * self.radius
@@ -145,7 +140,8 @@ def _form(facts: GeometryFacts, part: str, volume: float) -> FastenerForm | None
     round_it = [
         tube for tube in (holes if ring else shafts) if tube.turn > ROUND and line.holds(tube.line, ASIDE * tube.radius)
     ]
-    stems = round_it if ring else _stems(round_it)
+    long = [tube.radius for tube in round_it if ring or tube.high - tube.low > SHORT * 2 * tube.radius]
+    stems = [tube for tube in round_it if ring or (long and tube.radius <= STEM * min(long))]
     radius = (min if ring else max)((tube.radius for tube in stems), default=0.0)
     if not stems or (not ring and arm.max() > SLENDER * radius):
         return None
@@ -156,8 +152,6 @@ def _form(facts: GeometryFacts, part: str, volume: float) -> FastenerForm | None
     if not ring:
         wide, ends = depth[arm > WIDER * radius], (min(low for _, low, _ in spans), max(high for *_, high in spans))
         sides = np.any(wide <= ends[0] + SHORT * radius), np.any(wide >= ends[1] - SHORT * radius)
-        if np.any((wide > ends[0] + SHORT * radius) & (wide < ends[1] - SHORT * radius)):
-            return None  # a collar between two stems
         head = int(sides[1]) - int(sides[0])
     flats = _flats(faces, line)
     return FastenerForm(
@@ -186,12 +180,6 @@ def _axis(cylinders: Sequence[Bore]) -> Line | None:
         return sum(one.radius * one.turn * (one.high - one.low) for one in alike)
 
     return max((one.line for one in cylinders), key=area_about, default=None)
-
-
-def _stems(shafts: Sequence[Bore]) -> list[Bore]:
-    """Of the shafts of a body, its shank and its thread."""
-    long = [one.radius for one in shafts if one.high - one.low > SHORT * 2 * one.radius]
-    return [one for one in shafts if long and one.radius <= STEM * min(long)]
 
 
 def _flats(faces: Sequence[FaceFacts], line: Line) -> float | None:

@@ -25,14 +25,14 @@ class DowelProposal:
 
     Args:
         faces: its walls, those of each part together.
-        part: the body that it is, if it is one.
+        part: the body that it is; "" for none.
         ends: where it begins and ends [m], where no hole says it.
         remark: where it is from.
         name, walls: what tables call it, and names of its walls, once they have names.
     """
 
     faces: tuple[tuple[FaceFacts, ...], ...]
-    part: str | None = None
+    part: str = ""
     ends: tuple[Point, Point] | None = None
     remark: str = ""
     name: str = ""
@@ -62,7 +62,7 @@ class Fasteners:
     @property
     def left_out(self) -> tuple[str, ...]:
         """Parts that the mesh leaves out."""
-        return (*self._pins, *self.of_bolts, *self.others)
+        return (*(pin.part for pin in self.dowels), *self.of_bolts, *self.others)
 
     @property
     def of_bolts(self) -> tuple[str, ...]:
@@ -71,17 +71,13 @@ class Fasteners:
         return (*(names[0] for names in bodies), *(name for names in bodies for name in names[1:]))
 
     @property
-    def _pins(self) -> list[str]:
-        return [pin.part for pin in self.dowels if pin.part is not None]
-
-    @property
     def remarks(self) -> list[str]:
         """What there is to say of the parts that are left out."""
         out = "Left out of the mesh (geometry.leave_out)"
         beams = "a beam stands for each bolt, and what is not its shank rests as mass on its two seats"
         no_beams = "no beam stands for them but where holes by themselves ask for one"
         words = (
-            (self._pins, f"dowels, which carry only shear. {out}; a [[dowel]] stands for each"),
+            ([pin.part for pin in self.dowels], f"dowels, which carry only shear. {out}; a [[dowel]] stands for each"),
             (self.of_bolts, f"bolts, their nuts and washers. {out}: {beams}"),
             (self.others, f"bolts, studs or nuts whose holes, seats or size are not found. {out}, and {no_beams}"),
         )
@@ -185,15 +181,13 @@ def _pressed(
     The ends of the shank do not count, such as that of a dowel on the bottom of its hole.
     """
     sides = dict.fromkeys(side for contact in joints for side in contact.sides if side[0] == shaft.part)
-    wide = (1 + PLAY) * shaft.radius
-    pressed = [face for side in sides if _reach(facts, shaft, face := facts.face(*side)) > wide]
+
+    def reach(face: FaceFacts) -> float:
+        return float(shaft.line.about(facts.triangles(face))[0].max())
+
+    pressed = [face for side in sides if reach(face := facts.face(*side)) > (1 + PLAY) * shaft.radius]
     along, back = ([face for face in pressed if face.facing(way * shaft.line.axis) > 0.99] for way in (1, -1))
     return along, back
-
-
-def _reach(facts: GeometryFacts, shaft: _Shaft, face: FaceFacts) -> float:
-    """How far a face reaches from the axis of a shaft [m]."""
-    return float(shaft.line.about(facts.triangles(face))[0].max())
 
 
 def _pin(facts: GeometryFacts, shaft: _Shaft) -> DowelProposal:

@@ -3,17 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from faying.bolt.compliance import Head
 from faying.bolt.standards import COMMON, METRIC, is_tapped, metric, size_for_hole
 from faying.bolt.tapped import ENGAGED
 from faying.geometry.bores import Bore, Stack, room_around, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
-from faying.geometry.seats import Countersink, countersink, lips
+from faying.geometry.seats import countersink, lips
 from faying.setup.bolt_proposal import BoltProposal, to_nanometres
-from faying.setup.fasteners import Fasteners, quoted
+from faying.setup.fasteners import Fasteners
 from faying.setup.found_dowels import like_dowel, size_of, takes_dowel
+from faying.text import listed
 from faying.typing import Array
 from faying.units import show
 
@@ -48,10 +47,9 @@ def found_bolts(
             found.append(bolt)
     remarks = []
     for (widths, why), places in left.items():
-        where = ", ".join(f"({', '.join(f'{1e3 * x:.4g}' for x in place)})" for place in places[:PLACES])
-        more = f" and {len(places) - PLACES} more" if len(places) > PLACES else ""
+        where = listed((f"({', '.join(f'{1e3 * x:.4g}' for x in place)})" for place in places), PLACES)
         many = f"{len(places)} rows of holes" if len(places) > 1 else "holes"
-        remarks.append(f"{many} about {where}{more} mm ({widths}) {why}: left out")
+        remarks.append(f"{many} about {where} mm ({widths}) {why}: left out")
     return [_in_shared_thread(bolt, found) for bolt in found], remarks
 
 
@@ -123,21 +121,51 @@ def _in_row(facts: GeometryFacts, stack: Stack) -> BoltProposal | str:
     if found is None:
         return "are clearance holes of no common bolt (M3 to M24, ISO 273)"
     size, tapped = found
-    seats = [seat(facts, bore, top=bool(top)) for top, bore in enumerate(stack.ends)]
-    cones = [countersink(facts, bore, top=bool(top)) for top, bore in enumerate(stack.ends)]
-    sunk = [cone if cone is not None and 1e3 * cone.outer >= SUNK * size else None for cone in cones]
+    ends, word = stack.ends, "seat" if tapped is None else "thread"
+    flats = [seat(facts, bore, top=bool(top)) for top, bore in enumerate(ends)]
+    seats = [() if face is None else (face,) for face in flats]
+    cones = [countersink(facts, bore, top=bool(top)) for top, bore in enumerate(ends)]
+    thread = () if tapped is None else tuple(facts.face(tapped.part, number) for number in tapped.faces)
+    into = "" if tapped is None else f", screwed into the hole of {show(2 * tapped.radius, 'm')} in {tapped.part!r}"
+
+    def bolt(
+        top: int, head: tuple[FaceFacts, ...], bore: Bore, outer: float, why: str, shape: Head = "hexagon"
+    ) -> BoltProposal:
+        return BoltProposal(
+            axis=stack.axis,
+            parts=stack.parts,
+            head=head,
+            end=thread or seats[not top],
+            words=("seat" if head == seats[top] else "countersink", word),
+            size=size,
+            at=to_nanometres(stack.middle) if tapped is None else None,
+            ring=(round(2 * bore.radius, 9), round(outer, 9)),
+            shape=shape,
+            remark=f"M{size:g} for {_hole(bore)} (ISO 273){into}; {why}",
+        )
+
+    heads = (0, 1) if tapped is None else (int(tapped is ends[0]),)  # ends that a head may be at
+    for top in heads:
+        cone = cones[top]
+        if cone is not None and 1e3 * cone.outer >= SUNK * size and (thread or seats[not top]):
+            bore = min(stack.bores, key=lambda bore: bore.radius) if tapped is None else ends[top]
+            why = "a countersunk head" if thread else "countersunk head, and a nut on a ring as wide"
+            return bolt(top, cone.faces, bore, cone.outer, why)
+    top = heads[0]
     if tapped is not None:
-        top = tapped is stack.ends[0]
-        under = sunk[top] or seats[top]
-        if under is None:
-            return "have no flat face for a head"
-        return _screw(facts, stack, stack.ends[top], under, tapped, size)
-    for cone, nut in zip(sunk, reversed(seats), strict=True):
-        if cone is not None and nut is not None:
-            return _sunk(stack, cone, nut, size)
-    if seats[0] is None or seats[1] is None:
+        why = "seat: from the hole to the diameter of its head, ISO 4762"
+        return (
+            bolt(top, seats[top], ends[top], _socket(size), why, "socket")
+            if seats[top]
+            else "have no flat face for a head"
+        )
+    if flats[0] is None or flats[1] is None:
         return "have no flat face for head or nut at an end (a blind hole?)"
-    return _through(facts, stack, (seats[0], seats[1]), size)
+    widest = max(ends, key=lambda bore: (bore.slot is not None, bore.radius))
+    edge = min(room_around(facts, flats[0], ends[0]), room_around(facts, flats[1], ends[1]))
+    outer, why, shape = _pressed_ring(size, edge)
+    pin = "; if the holes are those of a dowel, give a [[dowel]] in its place" if like_dowel(stack) else ""
+    return bolt(0, seats[0], widest, outer, f"seat: from the hole to the diameter {why}{pin}", shape)
 
 
 def _washer(size: float) -> float:
@@ -163,88 +191,6 @@ def _pressed_ring(size: float, edge: float) -> tuple[float, str, Head]:
     return _socket(size), f"of its head, ISO 4762{less}", "socket"
 
 
-def _screw(
-    facts: GeometryFacts, stack: Stack, bore: Bore, under: Countersink | FaceFacts, tapped: Bore, size: float
-) -> BoltProposal:
-    """A screw into a tapped hole; bore, under: the hole under its head, and what it presses there."""
-    sunk = isinstance(under, Countersink)
-    why = "a countersunk head" if sunk else "seat: from the hole to the diameter of its head, ISO 4762"
-    return BoltProposal(
-        axis=stack.axis,
-        parts=stack.parts,
-        head=under.faces if isinstance(under, Countersink) else (under,),
-        end=tuple(facts.face(tapped.part, number) for number in tapped.faces),
-        words=("countersink" if sunk else "seat", "thread"),
-        size=size,
-        ring=(round(2 * bore.radius, 9), round(under.outer, 9) if isinstance(under, Countersink) else _socket(size)),
-        shape="hexagon" if sunk else "socket",
-        remark=f"M{size:g} for {_hole(bore)} (ISO 273), screwed into the hole of {show(2 * tapped.radius, 'm')} "
-        f"in {tapped.part!r}; {why}",
-    )
-
-
-def _sunk(stack: Stack, cone: Countersink, nut: FaceFacts, size: float) -> BoltProposal:
-    """A countersunk screw with a nut."""
-    hole = 2 * min(bore.radius for bore in stack.bores)
-    return BoltProposal(
-        axis=stack.axis,
-        parts=stack.parts,
-        head=cone.faces,
-        end=(nut,),
-        words=("countersink", "seat"),
-        size=size,
-        at=to_nanometres(stack.middle),
-        ring=(round(hole, 9), round(cone.outer, 9)),
-        remark=f"M{size:g} for a hole of {show(hole, 'm')} (ISO 273); countersunk head, and a nut on a ring as wide",
-    )
-
-
-def _through(facts: GeometryFacts, stack: Stack, seats: tuple[FaceFacts, FaceFacts], size: float) -> BoltProposal:
-    """A bolt with a nut."""
-    widest = max(stack.ends, key=lambda bore: (bore.slot is not None, bore.radius))
-    edge = min(room_around(facts, face, bore) for face, bore in zip(seats, stack.ends, strict=True))
-    outer, why, shape = _pressed_ring(size, edge)
-    pin = "" if not like_dowel(stack) else "; if the holes are those of a dowel, give a [[dowel]] in its place"
-    return BoltProposal(
-        axis=stack.axis,
-        parts=stack.parts,
-        head=(seats[0],),
-        end=(seats[1],),
-        size=size,
-        at=to_nanometres(stack.middle),
-        ring=(round(2 * widest.radius, 9), outer),
-        shape=shape,
-        remark=f"M{size:g} for {_hole(widest)} (ISO 273); seat: from the hole to the diameter {why}{pin}",
-    )
-
-
 def _hole(bore: Bore) -> str:
     wide = show(2 * bore.radius, "m")
     return f"a hole of {wide}" if bore.slot is None else f"a slot {wide} wide"
-
-
-def clamped_along(found: Sequence[BoltProposal], one: str, two: str) -> list[Array]:
-    """Axes of the bolts that clamp two parts together."""
-    return [bolt.axis for bolt in found if one in bolt.parts and two in bolt.parts]
-
-
-def shoulders(
-    facts: GeometryFacts, joints: Sequence[TouchingFaces], found: Sequence[BoltProposal]
-) -> list[TouchingFaces]:
-    """Faces that touch along the bolts of their two parts, as the shoulder of a stepped lap: no bolt presses them."""
-    out = []
-    for contact in joints:
-        axes = clamped_along(found, *contact.parts)
-        normal = np.array(facts.face(*contact.first).normal)
-        if axes and max(abs(float(normal @ axis)) for axis in axes) < 0.5:
-            out.append(contact)
-    return out
-
-
-def shoulder_remark(contacts: Sequence[TouchingFaces]) -> str:
-    """What there is to say of shoulders."""
-    between = "; ".join(quoted(pair) for pair in dict.fromkeys(contact.parts for contact in contacts))
-    return (
-        f"{len(contacts)} pairs of faces that touch along the bolts of {between} (shoulders, registers) are not joints,"
-        " since no bolt presses them: left out; add a [[joint]] if they do carry load"
-    )

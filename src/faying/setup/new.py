@@ -16,8 +16,7 @@ from faying.files import together, write_atomically, write_text
 from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
 from faying.misuse import checked_call
-from faying.setup.bolt_names import grouped
-from faying.setup.bolt_proposal import GRADE, BoltProposal
+from faying.setup.bolt_proposal import GRADE, BoltProposal, grouped
 from faying.setup.edit import written as quoted
 from faying.setup.faces import faces
 from faying.setup.fasteners import DowelProposal
@@ -212,7 +211,7 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         "[modes]\ncount = 10                     # elastic modes\n",
     ]
     assumed += _assumed_of_bolts(proposal.bolts, answers)
-    assumed += _alike((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
+    assumed += alike((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
     assumed.append("no support: the structure is free")
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
@@ -341,9 +340,9 @@ def _joints(proposal: Proposal) -> str:
 
 def _bolt(bolt: BoltProposal, answers: Answers) -> str:
     meshed, drawn = bolt.part is not None, bolt.drawn
-    drawn_mass = ["", ""]
-    if drawn is not None:
-        drawn_mass = [show(volume * (CATALOGUE[STEEL].density or 0.0), "kg", digits=6) for volume in drawn.volumes]
+    density = CATALOGUE[STEEL].density or 0.0
+    volumes = (None, None) if drawn is None else drawn.volumes
+    head_mass, nut_mass = ("" if one is None else show(one * density, "kg", digits=6) for one in volumes)
     if answers.preload is not None:
         preload = _line("preload", show(answers.preload, "N", digits=6))
     elif bolt.force is not None:
@@ -367,8 +366,8 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
         _line("head", bolt.shape != "hexagon" and bolt.shape),
         _line("engaged", _length(bolt.engaged)),
         _line("shank", drawn and _length(drawn.shank)),
-        _line("head_mass", drawn_mass[0], "drawn: what of its bodies is not the shank"),
-        _line("nut_mass", drawn and drawn.has_end and drawn_mass[1], "drawn: nut, or end of the screw"),
+        _line("head_mass", head_mass, "drawn: what of its bodies is not the shank"),
+        _line("nut_mass", nut_mass, "drawn: nut, or end of the screw"),
         preload,
         *map(_washer, () if drawn is None else drawn.washers),
     )
@@ -407,10 +406,10 @@ def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[s
         else:
             words = "no preload; its thread is not known: give one"
         remarks.append((bolt.name, words))
-    return _alike(remarks)
+    return alike(remarks)
 
 
-def _alike(remarks: Iterable[tuple[str, str]]) -> list[str]:
+def alike(remarks: Iterable[tuple[str, str]]) -> list[str]:
     """What is said of each name; names of which one thing is said have one line."""
     groups: dict[str, list[str]] = {}
     for name, words in remarks:
