@@ -66,7 +66,7 @@ def test_a_slot_is_one_hole_with_its_axis_in_the_middle(tmp_path):
     for slot, x in zip(slots, (30, 90), strict=True):
         assert slot.radius == pytest.approx(4.5e-3)
         assert np.abs(slot.slot) == pytest.approx([12e-3, 0, 0], abs=1e-9)
-        assert slot.at(slot.low) == pytest.approx([x * 1e-3, 30e-3, 12e-3], abs=1e-9)
+        assert slot.line.at(slot.low) == pytest.approx([x * 1e-3, 30e-3, 12e-3], abs=1e-9)
     assert [row.parts for row in rows(bores(facts), reach=1e-3)] == [("plate", "channel")] * 2
 
 

@@ -97,6 +97,15 @@ def hexagon_and_nut(path):
     return _write(path, **parts), [Drawn(size=10, ring=(11, 20), washers=2, says="nut")] * 2
 
 
+def ring_nuts(path):
+    """Two M10 in holes without play, each with a thin round ring without play for a nut."""
+    parts = _plates((10, 10), (12, 12))
+    for k, place in enumerate(BOTH, 1):
+        parts[f"bolt {k}"] = screw(place, 24, 10, 30, ("hexagon", 16))
+        parts[f"ring {k}"] = washer(place, -3, (10, 25, 3))
+    return _write(path, **parts), [Drawn(size=10, ring=(10, 16), says=f"nut 'ring {k}'") for k in (1, 2)]
+
+
 def socket_in_thread(path):
     """Two cap screws M8 with 14 mm of plain shank and 18 mm in holes of 6.8 mm."""
     parts = _plates((6.8, 9), (30, 14))
@@ -241,6 +250,7 @@ MADE = {
     one.__name__: one
     for one in (
         hexagon_and_nut,
+        ring_nuts,
         socket_in_thread,
         countersunk,
         mixed,

@@ -17,7 +17,7 @@ class Proportional:
         p = np.maximum(approach, 0.0)
         return p, np.where(p > 0, 1.0, 0.0)
 
-    def stiffness(self, pressure):
+    def stiffness(self, pressure, *, tabulated=False):
         return np.ones_like(pressure), SHEAR_OF_PRESSURE * pressure
 
 
@@ -55,7 +55,7 @@ class Root:
         closing = np.maximum(approach, 0.0)
         return closing**2, 2 * closing
 
-    def stiffness(self, pressure):
+    def stiffness(self, pressure, *, tabulated=False):
         return np.ones_like(pressure), self.shear * np.sqrt(pressure)
 
 

@@ -124,6 +124,7 @@ def test_a_table_is_taken_out_with_what_lies_in_it():
         ("[part.a]\nm = 1\n\n[z]\n", ("part", "b", "m"), 2, "[part.a]\nm = 1\n\n[part.b]\nm = 2\n\n[z]\n"),
         ("[part.a]\nm = 1\n", ("part", "a"), None, ""),
         ("[[s]]\na = 1\n", ("s", 0), None, ""),
+        ("# d\n\n# of s,\n# by hand\n[[s]]\na = 1\n# e\n", ("s", 0), None, "# d\n\n# e\n"),
         ('s = """\n[a]\n# no"""  # c\n[a]\n', ("a", "k"), True, 's = """\n[a]\n# no"""  # c\n[a]\nk = true\n'),
         ('k = "#"#c\n', ("k",), 'b"\\\n\x7f', 'k = "b\\"\\\\\\n\\u007f"#c\n'),
         ('"a\\u0062" = 1\n', ("ab",), 2, '"a\\u0062" = 2\n'),

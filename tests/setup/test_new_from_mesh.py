@@ -107,7 +107,7 @@ def test_a_bolt_without_named_seats_and_a_beam_are_said_and_not_proposed(tmp_pat
     assert done.exception is None, done.output
     assert "the bolt 'bolt0' has no named faces that touch other parts under its head and its nut" in done.output
     assert "no solid holds it, as of a beam" in done.output
-    assert "[[bolt]]  #" not in study_text.read_text()
+    assert "\n[[bolt]]" not in study_text.read_text()
 
 
 def test_the_halves_of_a_bolt_that_prets179_hold_are_one_part(tmp_path):

@@ -17,6 +17,7 @@ from faying.fe.attach import DepthBand, Ring, mean_motion
 from faying.fe.elasticity import Solid
 from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.holes import Hole, holes
+from faying.fe.line import Line, across
 from faying.fe.mesh import Mesh
 from faying.materials import material_of
 from faying.misuse import checked_call, shortened
@@ -268,8 +269,7 @@ class Bolt:
                 f"bolt {self.name!r}: its shank is {show(self.shank, 'm')} long, but its thread begins to engage "
                 f"{show(place.free, 'm')} below its head; give a length from 0 to that"
             )
-        arm = mesh.points[mesh.face_nodes(self.faces[0])] - point
-        radius = np.linalg.norm(arm - np.outer(arm @ place.axis, place.axis), axis=1)
+        radius = Line(point=point, axis=place.axis).about(mesh.points[mesh.face_nodes(self.faces[0])])[0]
         extent = seat or (2 * float(radius.min()), 2 * float(radius.max()))
         return FittedBolt(**vars(place), ends=ends, extent=extent, E_tapped=tapped)
 
@@ -361,8 +361,7 @@ class Bolt:
         near: list[tuple[float, Hole, str]] = []
         for face in faces:
             for hole in holes(mesh.points, mesh.face(face)):
-                arm = hole.centre - point
-                offset = float(np.linalg.norm(arm - (arm @ axis) * axis))
+                offset = Line(point=point, axis=axis).aside(hole.centre)
                 if offset <= AXIS_OFFSET * hole.radius:
                     return hole
                 # the hole of another bolt is farther away than the width of a head, since two heads do not overlap
@@ -430,9 +429,7 @@ def _mass(given: float | str, name: str) -> float:
 
 def frame_about(axis: Array) -> Array:
     """Unit vectors (3, 3): an axis, and two across it."""
-    second = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    second /= np.linalg.norm(second)
-    return np.stack([axis, second, np.cross(axis, second)])
+    return np.stack([axis, *across(axis).T])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -484,11 +481,10 @@ def _meet(one: BoltPlace, other: BoltPlace) -> bool:
 
     Not where two screws end in one thread from either side, one before the other.
     """
-    arm = other.point - one.point
     screwed = one.thread is not None and other.thread is not None
     if screwed and ((other.seats - one.point) @ one.axis).min() > one.length * (1 - 1e-6):
         return False
-    apart = float(np.linalg.norm(arm - (arm @ one.axis) * one.axis))
+    apart = Line(point=one.point, axis=one.axis).aside(other.point)
     thick = ((one.bolt.diameter or 0.0) + (other.bolt.diameter or 0.0)) / 2 or 1e-3 * one.length
     parallel = abs(float(one.axis @ other.axis)) > 0.9
     return apart < thick and parallel and bool({*one.bolt.faces} & {*other.bolt.faces})

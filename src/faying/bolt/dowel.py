@@ -17,6 +17,7 @@ from faying.errors import InputError
 from faying.fe.elasticity import Solid
 from faying.fe.elements import FACES
 from faying.fe.faces import NamedFaces, sampled
+from faying.fe.line import FACING, Line
 from faying.fe.mesh import Mesh
 from faying.fe.sides import nodes_of
 from faying.misuse import checked_call, shortened
@@ -27,7 +28,6 @@ from faying.units import show
 ORDER = 6  # greatest power of the depth in the pressure on the wall of a hole
 PLAY = 0.02  # of the diameter: holes that differ by more from the pin do not hold it without play
 AXIS_OFFSET = 0.02  # of the diameter: axes of holes that lie farther apart take no pin
-PARALLEL = 0.9998  # cosine of one degree
 CONDITION = 1e2  # of the moments of a wall: beyond it its mesh does not tell so many apart
 
 
@@ -93,9 +93,8 @@ class Dowel:
         holes = [hole for hole, _ in found]
         first, diameter = holes[0], self.diameter or 2 * found[0][1]
         for wall, (hole, radius) in zip(self.walls, found, strict=True):
-            arm = hole.point - first.point
-            aside = float(np.linalg.norm(arm - (arm @ first.axis) * first.axis))
-            if abs(hole.axis @ first.axis) < PARALLEL or aside > AXIS_OFFSET * diameter:
+            aside = Line(point=first.point, axis=first.axis).aside(hole.point)
+            if abs(hole.axis @ first.axis) < FACING or aside > AXIS_OFFSET * diameter:
                 raise InputError(
                     f"dowel {self.name!r}: the holes {self.walls[0]!r} and {wall!r} are not on one axis "
                     f"({show(aside, 'm', digits=3)} apart); name the holes that one pin fits"
@@ -188,8 +187,7 @@ def _hole(mesh: NamedFaces, wall: str, name: str) -> tuple[RoundHole, float]:
     if hole is None:
         raise InputError(f"dowel {name!r}: the face {wall!r} is not the wall of a round hole; name that wall")
     corners = nodes_of(tuple(block[:, : FACES[block.shape[1]].corners] for block in mesh.face(wall)))
-    arm = mesh.points[corners] - hole.point
-    return hole, float(np.linalg.norm(arm - np.outer(arm @ hole.axis, hole.axis), axis=1).mean())
+    return hole, float(Line(point=hole.point, axis=hole.axis).about(mesh.points[corners])[0].mean())
 
 
 @dataclass(frozen=True, kw_only=True)

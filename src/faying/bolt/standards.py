@@ -69,27 +69,22 @@ class MetricSize:
     sunk: float | None
     washer: tuple[float, float, float] | None
 
-    @classmethod
-    def read(cls, line: str) -> "MetricSize":
-        """From a line of the table."""
-        always, rest = line.split()[:5], line.split()[5:]
-        size, pitch, fine, medium, coarse = map(float, always)
-        flats, head, nut, socket, sunk, inner, outer, thickness = (None if one == "-" else float(one) for one in rest)
-        washer = (inner, outer, thickness) if inner and outer and thickness else None
-        return cls(
-            size=size,
-            pitch=pitch,
-            holes=(fine, medium, coarse),
-            flats=flats,
-            head=head,
-            nut=nut,
-            socket=socket,
-            sunk=sunk,
-            washer=washer,
-        )
+
+def _read(line: str) -> MetricSize:
+    """A line of the table."""
+    numbers = [None if word == "-" else float(word) for word in line.split()]
+    size, pitch, fine, medium, coarse = (number or 0.0 for number in numbers[:5])  # which every line has
+    inner, outer, thickness = numbers[10:]
+    return MetricSize(
+        size=size,
+        pitch=pitch,
+        holes=(fine, medium, coarse),
+        **dict(zip(("flats", "head", "nut", "socket", "sunk"), numbers[5:10], strict=True)),
+        washer=(inner, outer, thickness) if inner and outer and thickness else None,
+    )
 
 
-METRIC: Mapping[float, MetricSize] = {one.size: one for one in map(MetricSize.read, _TABLE.strip().splitlines())}
+METRIC: Mapping[float, MetricSize] = {one.size: one for one in map(_read, _TABLE.strip().splitlines())}
 # sizes that a hole by itself is taken for: with M7 or M27 every bore of 8 or 30 mm would be for a bolt
 COMMON = tuple(size for size in METRIC if 3 <= size <= 24 and size not in (3.5, 7))
 PINS = (0.6, 0.8, 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 40, 50)

@@ -2,39 +2,30 @@
 
 import re
 from dataclasses import dataclass
-from itertools import pairwise
 from math import isclose, pi
+
+import numpy as np
 
 from faying.bolt.standards import METRIC
 from faying.errors import InputError
 from faying.units import show
 
-# stress under proof load [Pa] of each property class (ISO 898-1:2013, Table 3)
-PROOF = {
-    "4.6": 225e6,
-    "4.8": 310e6,
-    "5.6": 280e6,
-    "5.8": 380e6,
-    "6.8": 440e6,
-    "8.8": 580e6,
-    "9.8": 650e6,
-    "10.9": 830e6,
-    "12.9": 970e6,
+# property class: least tensile strength, least stress at yield (or at 0.2 % or 0.0048 d of lasting elongation), and
+# stress under proof load [Pa] (ISO 898-1:2013, Table 3)
+CLASSES = {
+    "4.6": (400e6, 240e6, 225e6),
+    "4.8": (420e6, 340e6, 310e6),
+    "5.6": (500e6, 300e6, 280e6),
+    "5.8": (520e6, 420e6, 380e6),
+    "6.8": (600e6, 480e6, 440e6),
+    "8.8": (800e6, 640e6, 580e6),
+    "9.8": (900e6, 720e6, 650e6),
+    "10.9": (1040e6, 940e6, 830e6),
+    "12.9": (1220e6, 1100e6, 970e6),
 }
-# least tensile strength and least stress at yield, or at 0.2 % or 0.0048 d of lasting elongation [Pa] (the same table)
-STRENGTH = {
-    "4.6": (400e6, 240e6),
-    "4.8": (420e6, 340e6),
-    "5.6": (500e6, 300e6),
-    "5.8": (520e6, 420e6),
-    "6.8": (600e6, 480e6),
-    "8.8": (800e6, 640e6),
-    "9.8": (900e6, 720e6),
-    "10.9": (1040e6, 940e6),
-    "12.9": (1220e6, 1100e6),
-}
-THICK, PROOF_THICK = 16e-3, 600e6  # beyond this diameter [m], class 8.8 has this stress under proof load [Pa]
-STRENGTH_THICK = (830e6, 660e6)  # and these strengths
+PROOF = {name: proof for name, (*_, proof) in CLASSES.items()}
+STRENGTH = {name: (tensile, lasting) for name, (tensile, lasting, _) in CLASSES.items()}
+THICK, THICK_CLASS = 16e-3, (830e6, 660e6, 600e6)  # beyond this diameter [m], class 8.8 has these stresses
 MIN_DIAMETER, MAX_DIAMETER = 1.6e-3, 39e-3  # diameters [m] that ISO 898-1 covers
 THINNEST, THICKEST = 1e-3, 300e-3  # diameters [m] of the threads of ISO 261
 FINEST = 0.2e-3  # m: pitch of the finest thread of ISO 261
@@ -98,23 +89,15 @@ class Thread:
         Raises:
             InputError: The diameter is none of a metric thread, 1 mm to 300 mm.
         """
-        size, pitches = 1e3 * diameter, {one.size: one.pitch for one in METRIC.values()}
-        sizes = sorted(pitches)
-        if size <= sizes[0]:
-            return cls(diameter=diameter, pitch=diameter * pitches[sizes[0]] / sizes[0])
-        for low, high in pairwise(sizes):
-            if low <= size <= high:
-                share = (size - low) / (high - low)
-                return cls(diameter=diameter, pitch=1e-3 * (pitches[low] + share * (pitches[high] - pitches[low])))
-        return cls(diameter=diameter, pitch=1e-3 * pitches[sizes[-1]])
+        size, pitches = 1e3 * diameter, [one.pitch for one in METRIC.values()]
+        pitch = np.interp(size, list(METRIC), pitches) * min(size / min(METRIC), 1.0)
+        return cls(diameter=diameter, pitch=1e-3 * float(pitch))
 
     @property
     def is_coarse(self) -> bool:
         """Whether this is a coarse thread of ISO 261."""
-        return any(
-            isclose(1e3 * self.diameter, one.size, rel_tol=1e-9) and isclose(1e3 * self.pitch, one.pitch, rel_tol=1e-9)
-            for one in METRIC.values()
-        )
+        coarse = [one.pitch for one in METRIC.values() if isclose(1e3 * self.diameter, one.size, rel_tol=1e-9)]
+        return any(isclose(1e3 * self.pitch, pitch, rel_tol=1e-9) for pitch in coarse)
 
     @property
     def pitch_diameter(self) -> float:
@@ -171,23 +154,23 @@ class Fastener:
             )
 
     @property
-    def _is_thick(self) -> bool:
-        return self.grade == "8.8" and self.thread.diameter > THICK
-
-    @property
-    def proof_stress(self) -> float:
-        """Stress under proof load [Pa]."""
-        return PROOF_THICK if self._is_thick else PROOF[self.grade]
+    def _stresses(self) -> tuple[float, float, float]:
+        return THICK_CLASS if self.grade == "8.8" and self.thread.diameter > THICK else CLASSES[self.grade]
 
     @property
     def tensile_strength(self) -> float:
         """Least tensile strength R_m [Pa]."""
-        return (STRENGTH_THICK if self._is_thick else STRENGTH[self.grade])[0]
+        return self._stresses[0]
 
     @property
     def yield_stress(self) -> float:
         """Least stress [Pa] at yield, or at 0.2 % of lasting elongation (0.0048 d for 4.8, 5.8 and 6.8)."""
-        return (STRENGTH_THICK if self._is_thick else STRENGTH[self.grade])[1]
+        return self._stresses[1]
+
+    @property
+    def proof_stress(self) -> float:
+        """Stress under proof load [Pa]."""
+        return self._stresses[2]
 
     @property
     def proof_load(self) -> float:

@@ -44,19 +44,13 @@ def asked(proposal: Any, scan: Path | None) -> Any:
     """Ask what the geometry does not tell; each question has its default."""
     from faying.materials import CATALOGUE
     from faying.setup import new
-    from faying.setup.bolt_names import grouped
 
     facts = proposal.facts
     click.echo(f"{facts.file}: {len(facts.parts)} parts, {len(proposal.joints)} joints, {len(proposal.bolts)} bolts")
-    alike: dict[str, list[str]] = {}
-    for bolt in proposal.bolts:
-        alike.setdefault(bolt.remark, []).append(bolt.name)
-    for remark, names in alike.items():
-        click.echo(f"  {grouped(names)}: {remark}")
-    for dowel in proposal.dowels:
-        click.echo(f"  {dowel.name}: {dowel.remark}")
-    for remark in proposal.remarks:
-        click.echo(f"  {remark}")
+    bolts = new.alike((bolt.name, bolt.remark) for bolt in proposal.bolts)
+    dowels = [f"{dowel.name}: {dowel.remark}" for dowel in proposal.dowels]
+    for line in (*bolts, *dowels, *proposal.remarks):
+        click.echo(f"  {line}")
     choice = click.Choice(list(CATALOGUE))
     materials = {
         part.name: click.prompt(f"material of {part.name}", default=new.STEEL, type=choice) for part in facts.parts

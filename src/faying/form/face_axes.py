@@ -7,9 +7,9 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.interface import Interface
+from faying.fe.line import across
 from faying.fe.mesh import Mesh
 from faying.geometry.face_triangles import FacePieces, FaceTriangles
-from faying.geometry.seen_along import across
 from faying.typing import Array
 
 Sides = tuple[float, float]

@@ -6,7 +6,8 @@ from itertools import combinations
 
 import numpy as np
 
-from faying.geometry.face_facts import FACING, FaceFacts, GeometryFacts
+from faying.fe.line import FACING, Line
+from faying.geometry.face_facts import FaceFacts, GeometryFacts
 from faying.typing import Array
 
 FULL_TURN = 0.95  # share of a turn from which the faces of a bore close
@@ -17,7 +18,7 @@ LEVEL = 1e-6  # m: within which a plane begins where a bore ends
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Bore:
-    """A round hole in a part; two are the same only where they are one object.
+    """A round hole in a part, or a round shaft; two are the same only where they are one object.
 
     Args:
         part: the part.
@@ -26,6 +27,7 @@ class Bore:
         point: on the axis (3,) [m].
         low, high: where it begins and ends, measured along the axis from the origin [m].
         faces: numbers of its faces.
+        turn: the share of a whole turn that its faces go round [-].
         slot: of a slotted hole, from the axis of one end to that of the other (3,) [m]; its radius is half its width,
             and its point lies half-way.
     """
@@ -37,6 +39,7 @@ class Bore:
     low: float
     high: float
     faces: tuple[int, ...]
+    turn: float = 1.0
     slot: Array | None = None
 
     @property
@@ -44,9 +47,10 @@ class Bore:
         """Part and number of its faces."""
         return frozenset((self.part, number) for number in self.faces)
 
-    def at(self, depth: float) -> Array:
-        """The point of the axis (3,) [m] at a depth [m]."""
-        return np.asarray(self.point + (depth - self.point @ self.axis) * self.axis)
+    @property
+    def line(self) -> Line:
+        """The axis; depths along it are from the origin."""
+        return Line(point=self.point - (self.point @ self.axis) * self.axis, axis=self.axis)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -77,72 +81,64 @@ class Stack:
     def middle(self) -> Array:
         """The point of the axis (3,) [m] in the middle of the stack: on the axis of a round hole, if there is one."""
         round_ones = [bore for bore in self.bores if bore.slot is None]
-        return (round_ones or self.bores)[0].at((self.ends[0].low + self.ends[1].high) / 2)
+        return (round_ones or self.bores)[0].line.at((self.ends[0].low + self.ends[1].high) / 2)
 
 
-def bores(facts: GeometryFacts) -> list[Bore]:
-    """The holes of all parts, round or slotted; halves and quarters of one cylinder are put together."""
+def tubes(faces: Sequence[FaceFacts], *, hole: bool) -> list[Bore]:
+    """The cylinders of a part, holes or shafts; halves and quarters of one are put together."""
     out = []
-    for part in facts.parts:
-        left = [face for face in facts.by_part[part.name] if face.hole]
-        halves: list[list[FaceFacts]] = []
-        while left:
-            first = left[0]
-            same = [face for face in left if _one_cylinder(first, face)]
-            left = [face for face in left if face not in same]
-            axis = np.array(first.axis)
-            ends = [_ends(face, axis) for face in same]
-            low, high = min(a for a, _ in ends), max(b for _, b in ends)
-            turn = sum((face.turn or 0.0) * (b - a) for face, (a, b) in zip(same, ends, strict=True)) / (high - low)
-            if turn < FULL_TURN or first.radius is None:
-                halves += [same] if abs(turn - 0.5) < 1 - FULL_TURN else []
-                continue
-            out.append(
-                Bore(
-                    part=part.name,
-                    radius=first.radius,
-                    axis=axis,
-                    point=np.array(first.start),
-                    low=low,
-                    high=high,
-                    faces=tuple(face.number for face in same),
-                )
+    left = [face for face in faces if face.hole is hole and face.radius]
+    while left:
+        first = left[0]
+        line = first.line
+        line = replace(line, point=line.at(float(-line.point @ line.axis)))  # its depths are from the origin
+        same = [face for face in left if _one_cylinder(first, face)]
+        left = [face for face in left if face not in same]
+        spans = [line.span(face.line, 0.0, face.length or 0.0) for face in same]
+        low, high = min(a for a, _ in spans), max(b for _, b in spans)
+        turned = sum((face.turn or 0.0) * (b - a) for face, (a, b) in zip(same, spans, strict=True))
+        out.append(
+            Bore(
+                part=first.part,
+                radius=first.radius or 0.0,
+                axis=line.axis,
+                point=first.line.point,
+                low=low,
+                high=high,
+                faces=tuple(face.number for face in same),
+                turn=turned / (high - low) if high > low else 0.0,
             )
-        out += _slots(facts, part.name, halves)
+        )
     return out
 
 
-def _slots(facts: GeometryFacts, part: str, halves: Sequence[Sequence[FaceFacts]]) -> list[Bore]:
+def bores(facts: GeometryFacts) -> list[Bore]:
+    """The holes of all parts, round or slotted."""
+    out = []
+    for part, faces in facts.by_part.items():
+        found = tubes(faces, hole=True)
+        out += [bore for bore in found if bore.turn >= FULL_TURN]
+        out += _slots(facts, part, [bore for bore in found if abs(bore.turn - 0.5) < 1 - FULL_TURN])
+    return out
+
+
+def _slots(facts: GeometryFacts, part: str, halves: Sequence[Bore]) -> list[Bore]:
     """Slotted holes: two half cylinders of one radius and one length, joined by two planes along their axes."""
     out: list[Bore] = []
     used: set[int] = set()
-    for first, second in combinations(halves, 2):
-        one, two = first[0], second[0]
-        if used & {one.number, two.number} or one.radius is None or two.radius is None:
+    for one, two in combinations(halves, 2):
+        axis = one.axis
+        arm = two.point - one.line.at(float(two.point @ axis))
+        ends = one.line.span(two.line, two.low, two.high)
+        alike = abs(axis @ two.axis) >= FACING and abs(one.radius - two.radius) <= 1e-4 * one.radius
+        level = max(abs(ends[0] - one.low), abs(ends[1] - one.high)) <= LEVEL
+        near = [{number for face in half.faces for number in facts.face(part, face).neighbours} for half in (one, two)]
+        planes = [face for number in near[0] & near[1] if (face := facts.face(part, number)).normal is not None]
+        sides = sum(abs(face.facing(axis)) < 1e-3 for face in planes)
+        if used & {*one.faces, *two.faces} or not alike or not level or sides < 2 or not np.any(arm):
             continue
-        axis = np.array(one.axis)
-        ends = np.array([_ends(one, axis), _ends(two, axis)])
-        arm = np.array(two.start) - np.array(one.start)
-        arm = arm - (arm @ axis) * axis
-        alike = abs(axis @ np.array(two.axis)) >= FACING and abs(one.radius - two.radius) <= 1e-4 * one.radius
-        near = [{number for face in half for number in face.neighbours} for half in (first, second)]
-        both = [facts.face(part, number).normal for number in near[0] & near[1]]
-        sides = sum(normal is not None and abs(np.array(normal) @ axis) < 1e-3 for normal in both)
-        if not alike or np.abs(ends[0] - ends[1]).max() > LEVEL or sides < 2 or not np.any(arm):
-            continue
-        used |= {one.number, two.number}
-        out.append(
-            Bore(
-                part=part,
-                radius=one.radius,
-                axis=axis,
-                point=np.array(one.start) + arm / 2,
-                low=float(ends[0, 0]),
-                high=float(ends[0, 1]),
-                faces=tuple(face.number for face in (*first, *second)),
-                slot=arm,
-            )
-        )
+        used |= {*one.faces, *two.faces}
+        out.append(replace(one, point=one.point + arm / 2, faces=(*one.faces, *two.faces), turn=1.0, slot=arm))
     return out
 
 
@@ -208,10 +204,8 @@ def seat(facts: GeometryFacts, bore: Bore, *, top: bool) -> FaceFacts | None:
     fitting = []
     for number in near:
         face = facts.face(bore.part, number)
-        if face.normal is None or np.array(face.normal) @ outwards < FACING:
-            continue
-        level = (np.array(face.centre) - bore.at(depth)) @ outwards
-        if -LEVEL <= level <= bore.radius:
+        level = (np.array(face.centre) - bore.line.at(depth)) @ outwards
+        if face.facing(outwards) >= FACING and -LEVEL <= level <= bore.radius:
             fitting.append((number not in neighbours, level, number))
     return facts.face(bore.part, min(fitting)[2]) if fitting else None
 
@@ -240,26 +234,17 @@ def room_around(facts: GeometryFacts, face: FaceFacts, bore: Bore) -> float:
 def _one_cylinder(one: FaceFacts, two: FaceFacts) -> bool:
     assert one.radius is not None
     assert two.radius is not None
-    axis, arm = np.array(one.axis), np.array(two.start) - np.array(one.start)
-    if abs(axis @ np.array(two.axis)) < FACING or abs(one.radius - two.radius) > 1e-4 * one.radius:
+    if abs(one.radius - two.radius) > 1e-4 * one.radius or not one.line.holds(two.line, 1e-3 * one.radius):
         return False
-    if np.linalg.norm(arm - (arm @ axis) * axis) > 1e-3 * one.radius:
-        return False
-    (a, b), (c, d) = _ends(one, axis), _ends(two, axis)
-    return a <= d + LEVEL and c <= b + LEVEL
-
-
-def _ends(face: FaceFacts, axis: Array) -> tuple[float, float]:
-    assert face.length is not None
-    start = np.array(face.start)
-    ends = (start @ axis, (start + face.length * np.array(face.axis)) @ axis)
-    return float(min(ends)), float(max(ends))
+    low, high = one.line.span(two.line, 0.0, two.length or 0.0)
+    return low <= (one.length or 0.0) + LEVEL and high >= -LEVEL
 
 
 def _one_axis(one: Bore, two: Bore) -> bool:
-    arm = two.point - one.point
+    point = two.point
     for slot in (one.slot, two.slot):
         if slot is not None:  # a bolt may stand anywhere between the ends of a slot
-            arm = arm - float(np.clip(arm @ slot / (slot @ slot), -0.5, 0.5)) * slot
-    aside = float(np.linalg.norm(arm - (arm @ one.axis) * one.axis))
-    return bool(abs(one.axis @ two.axis) >= FACING and aside <= AXIS_OFFSET * min(one.radius, two.radius))
+            point = point - float(np.clip((point - one.point) @ slot / (slot @ slot), -0.5, 0.5)) * slot
+    return Line(point=one.point, axis=one.axis).holds(
+        Line(point=point, axis=two.axis), AXIS_OFFSET * min(one.radius, two.radius)
+    )

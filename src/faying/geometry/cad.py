@@ -179,20 +179,17 @@ def read_parts(path: Path) -> CadParts:
 
 def _drop_shared(path: Path, solids: Sequence[Any], names: Sequence[str]) -> tuple[Note, ...]:
     """Take names away that faces of several parts have: they tell no face. A note says which."""
+    faces = [(face, part) for solid, part in zip(solids, names, strict=True) for face in solid.faces if face.name]
     owners: dict[str, set[str]] = {}
-    for solid, part in zip(solids, names, strict=True):
-        for face in solid.faces:
-            owners.setdefault(face.name or "", set()).add(part)
-    shared = [name for name, parts in owners.items() if name and len(parts) > 1]
-    for solid in solids:
-        for face in solid.faces:
-            if face.name in shared:
-                face.name = ""
-    if not shared:
-        return ()
-    listed = ", ".join(f"{name!r} ({', '.join(sorted(owners[name]))})" for name in shared)
-    text = f"{path.name}: faces of several parts have one name, which names none of them then: {listed}"
-    return (Note(code="shared-names", text=f"{text}; name them apart, or choose them by what they are"),)
+    for face, part in faces:
+        owners.setdefault(face.name, set()).add(part)
+    shared = {name: f"{name!r} ({', '.join(sorted(parts))})" for name, parts in owners.items() if len(parts) > 1}
+    for face, _ in faces:
+        if face.name in shared:
+            face.name = ""
+    text = f"{path.name}: faces of several parts have one name, which names none of them then: "
+    text += f"{', '.join(shared.values())}; name them apart, or choose them by what they are"
+    return (Note(code="shared-names", text=text),) if shared else ()
 
 
 def own_names(given: Sequence[str], file: str) -> tuple[list[str], tuple[Note, ...]]:
@@ -204,15 +201,10 @@ def own_names(given: Sequence[str], file: str) -> tuple[list[str], tuple[Note, .
         while own in out or (own != name and own in names):
             own += "_"
         out.append(own)
-    numbered = [
-        f"{name!r} is {', '.join(o for n, o in zip(names, out, strict=True) if n == name)}"
-        for name in dict.fromkeys(names)
-        if names.count(name) > 1
-    ]
-    if not numbered:
-        return out, ()
-    text = f"{file} names several solids alike; they are numbered in the order of the file: {'; '.join(numbered)}"
-    return out, (Note(code="numbered-parts", text=text),)
+    alike = {name: [o for n, o in zip(names, out, strict=True) if n == name] for name in names}
+    numbered = "; ".join(f"{name!r} is {', '.join(some)}" for name, some in alike.items() if len(some) > 1)
+    text = f"{file} names several solids alike; they are numbered in the order of the file: {numbered}"
+    return out, (Note(code="numbered-parts", text=text),) if numbered else ()
 
 
 def _nameless(path: Path, solids: Sequence[Any], names: Sequence[str], products: Sequence[str]) -> tuple[Note, ...]:
@@ -222,10 +214,8 @@ def _nameless(path: Path, solids: Sequence[Any], names: Sequence[str], products:
         for number, (solid, name) in enumerate(zip(solids, names, strict=True), 1)
         if not name
     ]
-    if not where:
-        return ()
     text = (
         f"{path.name} gives no names that tell its solids apart: {', '.join(where)} (products: "
         f"{', '.join(products) or 'none'}); name the bodies in the CAD program, or take these names"
     )
-    return (Note(code="nameless-parts", text=text),)
+    return (Note(code="nameless-parts", text=text),) if where else ()

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.errors import InputError
+from faying.fe.line import FACING, Line
 from faying.fe.overlap import overlap
 from faying.geometry.cad import ask_kernel, check_head, read_parts
 from faying.notes import Note
@@ -19,7 +20,6 @@ from faying.typing import Array, Index
 Point = tuple[float, float, float]
 FLAT = 1e-5  # of a face's size: how far its points lie from a plane that it counts as
 ROUND = 1e-4  # of the radius: how far they lie from a cylinder
-FACING = np.cos(np.deg2rad(1.0))  # faces that differ by less than a degree are parallel
 MAX_DISTANCE = 0.01  # of the size of the structure: faces farther apart do not belong together
 
 
@@ -62,6 +62,20 @@ class FaceFacts:
     def label(self) -> str:
         """The part and the number, for messages."""
         return f"{self.part} {self.number}"
+
+    @property
+    def side(self) -> tuple[str, int]:
+        """The part and the number."""
+        return self.part, self.number
+
+    @property
+    def line(self) -> Line:
+        """The axis of a cylinder, from where it begins."""
+        return Line(point=np.array(self.start), axis=np.array(self.axis))
+
+    def facing(self, direction: Array) -> float:
+        """Component of a direction (3,) along the outward normal of a plane; 0 for other kinds."""
+        return 0.0 if self.normal is None else float(np.array(self.normal) @ direction)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,10 +157,26 @@ class GeometryFacts(Summary):
     faces: tuple[FaceFacts, ...]
     contacts: tuple[TouchingFaces, ...]
     distances: dict[str, list[float]]
-    overlaps: tuple[str, ...]
-    notes: tuple[Note, ...]
+    overlaps: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     corners: Array
     face_of: Index
+
+    @classmethod
+    def of(
+        cls,
+        parts: Sequence[PartFacts],
+        faces: Sequence[FaceFacts],
+        triangles: Sequence[Array],
+        *,
+        touching: bool = True,
+        **rest: Any,
+    ) -> "GeometryFacts":
+        """The facts of parts and of faces with their triangles (t, 3, 3) [m]; touching: whether contacts are sought."""
+        corners = np.concatenate([np.zeros((0, 3, 3)), *triangles])
+        face_of = np.repeat(np.arange(len(faces)), np.array([len(one) for one in triangles], dtype=np.int64))
+        met = tuple(contacts(faces, corners, face_of)) if touching and len(corners) else ()
+        return cls(parts=tuple(parts), faces=tuple(faces), contacts=met, corners=corners, face_of=face_of, **rest)
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return what the geometry consists of, and the size of each part."""
@@ -162,7 +192,7 @@ class GeometryFacts(Summary):
         """Return one part, its faces and their contacts. Raises InputError where there is no such part."""
         if name not in self.by_part:
             raise InputError(f"no part is called {name!r}; the parts are {', '.join(map(repr, self.by_part))}")
-        contacts = tuple(c for c in self.contacts if name in (c.first[0], c.second[0]))
+        contacts = tuple(contact for contact in self.contacts if name in contact.parts)
         return replace(self.without([part.name for part in self.parts if part.name != name]), contacts=contacts)
 
     def to_dict(self) -> dict[str, Any]:
@@ -193,13 +223,17 @@ class GeometryFacts(Summary):
 
     def triangles(self, face: FaceFacts) -> Array:
         """Triangles (t, 3, 3) [m] of a face."""
-        return self._triangles[face.part, face.number]
+        return self._triangles[face.side]
+
+    def corners_of(self, part: str) -> Array:
+        """Triangles (t, 3, 3) [m] of all faces of a part."""
+        return np.concatenate([self.triangles(face) for face in self.by_part[part]])
 
     @cached_property
     def _triangles(self) -> dict[tuple[str, int], Array]:
         order = np.argsort(self.face_of, kind="stable")
         rows = np.split(order, np.cumsum(np.bincount(self.face_of, minlength=len(self.faces)))[:-1])
-        return {(face.part, face.number): self.corners[row] for face, row in zip(self.faces, rows, strict=True)}
+        return {face.side: self.corners[row] for face, row in zip(self.faces, rows, strict=True)}
 
     def without(self, parts: Container[str]) -> "GeometryFacts":
         """The same geometry with some parts left out."""
@@ -264,7 +298,7 @@ def facts_of(
 ) -> GeometryFacts:
     """The facts of solids [mm] in this process, which has the kernel; touching: whether contacts are sought."""
     faces: list[FaceFacts] = []
-    parts, corners, owner = [], [], []
+    parts, triangles = [], []
     for solid, name in zip(solids, names, strict=True):
         solid_faces = list(solid.faces)
         low, high = (1e-3 * np.array([*end]) for end in solid.bounding_box)  # before there are triangles, it is exact
@@ -281,34 +315,23 @@ def facts_of(
                     number=k + 1,
                     name=face.name or "",
                     area=1e-6 * face.mass,
-                    centre=_point(centre),
+                    centre=point_of(centre),
                     neighbours=near,
                     **shape,
                 )
             )
-            corners.append(tris[mine])
-            owner.append(np.full(np.count_nonzero(mine), len(faces) - 1))
-        box = {"low": _point(np.round(low, 9)), "high": _point(np.round(high, 9))}  # the kernel's has a margin
+            triangles.append(tris[mine])
+        box = {"low": point_of(np.round(low, 9)), "high": point_of(np.round(high, 9))}  # the kernel's has a margin
         parts.append(
             PartFacts(name=name, volume=1e-9 * solid.mass, area=1e-6 * sum(f.mass for f in solid_faces), **box)
         )
-    places, face_of = np.concatenate(corners), np.concatenate(owner)
     distances = {label: _distances(label, part, at, solids, names) for label, (part, at) in points.items()}
-    return GeometryFacts(
-        file=file,
-        parts=tuple(parts),
-        faces=tuple(faces),
-        contacts=tuple(contacts(faces, places, face_of)) if touching else (),
-        distances=distances,
-        overlaps=(),
-        notes=(),
-        corners=places,
-        face_of=face_of,
-    )
+    return GeometryFacts.of(parts, faces, triangles, touching=touching, file=file, distances=distances)
 
 
-def _point(values: Any) -> Point:
-    x, y, z = (round(float(v), 12) + 0.0 for v in values)  # what is less is rounding
+def point_of(values: Any, digits: int = 12) -> Point:
+    """A point or a direction (3,) to so many digits: what is less is rounding."""
+    x, y, z = (round(float(v), digits) + 0.0 for v in values)
     return x, y, z
 
 
@@ -343,7 +366,7 @@ def shape_of(corners: Array, normals: Array, area: float) -> dict[str, Any]:
     if length > 0:
         normal = total / length
         if np.ptp(points @ normal) < FLAT * np.sqrt(area):
-            return {"kind": "plane", "normal": _point(normal)}
+            return {"kind": "plane", "normal": point_of(normal)}
     weight = np.repeat(np.linalg.norm(cross, axis=1), 3)
     across = normals.reshape(-1, 3)
     spread, turn = np.linalg.eigh(np.einsum("p,pi,pj->ij", weight, across, across) / weight.sum())
@@ -367,8 +390,8 @@ def shape_of(corners: Array, normals: Array, area: float) -> dict[str, Any]:
     return {
         "kind": "cylinder",
         "radius": radius,
-        "axis": _point(axis),
-        "start": _point(start),
+        "axis": point_of(axis),
+        "start": point_of(start),
         "length": extent,
         "turn": min(area / (2 * np.pi * radius * extent), 1.0) if extent else 0.0,
         "hole": bool(outwards.mean() < 0),
@@ -402,9 +425,7 @@ def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list
             least, own = min((one, rows[i]), (two, rows[j]), key=lambda pair: pair[0].area)
             area *= least.area / _area(corners[own])  # chords have less
             if area > 1e-6 * min(one.area, two.area):
-                out.append(
-                    TouchingFaces(first=(one.part, one.number), second=(two.part, two.number), area=area, gap=gap)
-                )
+                out.append(TouchingFaces(first=one.side, second=two.side, area=area, gap=gap))
     return sorted(out, key=lambda contact: -contact.area)
 
 
@@ -420,11 +441,9 @@ def _gap(one: FaceFacts, two: FaceFacts) -> float | None:
     hole, shaft = (one, two) if one.hole else (two, one)
     assert hole.radius is not None
     assert shaft.radius is not None
-    axis, arm = np.array(hole.axis), np.array(shaft.start) - np.array(hole.start)
-    aside = float(np.linalg.norm(arm - (arm @ axis) * axis))
-    if abs(axis @ np.array(shaft.axis)) < FACING or aside > abs(hole.radius - shaft.radius) + ROUND * hole.radius:
-        return None
     gap = hole.radius - shaft.radius
+    if not hole.line.holds(shaft.line, abs(gap) + ROUND * hole.radius):
+        return None
     return 0.0 if abs(gap) < ROUND * hole.radius else gap
 
 

@@ -47,11 +47,10 @@ class FaceTriangles:
         keys = np.round(facts.corners.reshape(-1, 3) / (1e-9 * facts.size)).astype(np.int64)
         _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
         rows = place.reshape(-1, 3)
-        index = {(face.part, face.number): k for k, face in enumerate(facts.faces)}
-        triangles = {}
-        for name, faces in named.items():
-            mine = np.isin(facts.face_of, [index[face.part, face.number] for face in faces])
-            triangles[name] = rows[mine]
+        index = {face.side: k for k, face in enumerate(facts.faces)}
+        triangles = {
+            name: rows[np.isin(facts.face_of, [index[face.side] for face in faces])] for name, faces in named.items()
+        }
         owner = {name: faces[0].part for name, faces in named.items()}
         points = facts.corners.reshape(-1, 3)[first]
         return cls(points=points, triangles=triangles, face_part=owner, size=facts.size)

@@ -7,7 +7,7 @@ import numpy as np
 from faying.fe.faces import face_centre
 from faying.fe.mesh import Mesh
 from faying.fe.sides import skin, triangles_of
-from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, contacts, shape_of
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, point_of, shape_of
 from faying.typing import Array
 
 
@@ -19,7 +19,7 @@ def mesh_facts(mesh: Mesh, points: Mapping[str, tuple[str, Sequence[float]]] | N
         points: label -> (part, point [m]): the distance of each to the faces of its part is measured.
     """
     faces: list[FaceFacts] = []
-    corners, owner, parts = [], [], []
+    triangles, parts = [], []
     for part in mesh.parts:
         named = [name for name in mesh.faces if mesh.face_part[name] == part]
         nodes = {name: set(mesh.face_nodes(name).tolist()) for name in named}
@@ -29,38 +29,24 @@ def mesh_facts(mesh: Mesh, points: Mapping[str, tuple[str, Sequence[float]]] | N
             cross = np.cross(tris[:, 1] - tris[:, 0], tris[:, 2] - tris[:, 0])
             normals = np.repeat((cross / np.linalg.norm(cross, axis=1)[:, None])[:, None], 3, axis=1)
             near = tuple(j + 1 for j, other in enumerate(named) if j != k and len(nodes[name] & nodes[other]) > 1)
-            x, y, z = (float(v) for v in centre)
             faces.append(
                 FaceFacts(
                     part=part,
                     number=k + 1,
                     name=name,
                     area=area,
-                    centre=(x, y, z),
+                    centre=point_of(centre),
                     neighbours=near,
                     **shape_of(tris, normals, area),
                 )
             )
-            corners.append(tris)
-            owner.append(np.full(len(tris), len(faces) - 1))
+            triangles.append(tris)
         parts.append(_part(mesh, part))
-    places = np.concatenate(corners) if corners else np.zeros((0, 3, 3))
-    face_of = np.concatenate(owner) if owner else np.zeros(0, dtype=np.int64)
     distances = {
-        label: [distance_to(np.array(at), places[face_of == k]) for k, face in enumerate(faces) if face.part == part]
+        label: [distance_to(np.array(at), one) for one, face in zip(triangles, faces, strict=True) if face.part == part]
         for label, (part, at) in (points or {}).items()
     }
-    return GeometryFacts(
-        file=mesh.source,
-        parts=tuple(parts),
-        faces=tuple(faces),
-        contacts=tuple(contacts(faces, places, face_of)) if len(places) else (),
-        distances=distances,
-        overlaps=(),
-        notes=mesh.notes,
-        corners=places,
-        face_of=face_of,
-    )
+    return GeometryFacts.of(parts, faces, triangles, file=mesh.source, distances=distances, notes=mesh.notes)
 
 
 def _part(mesh: Mesh, part: str) -> PartFacts:
@@ -68,8 +54,8 @@ def _part(mesh: Mesh, part: str) -> PartFacts:
     x, y, z = outer.transpose(1, 0, 2)
     volume = float(np.einsum("ti,ti->", x, np.cross(y, z))) / 6
     area = float(np.linalg.norm(np.cross(y - x, z - x), axis=1).sum()) / 2
-    low, high = (tuple(float(v) for v in side) for side in (outer.min(axis=(0, 1)), outer.max(axis=(0, 1))))
-    return PartFacts(name=part, volume=volume, area=area, low=low, high=high)  # type: ignore[arg-type]
+    low, high = point_of(outer.min(axis=(0, 1))), point_of(outer.max(axis=(0, 1)))
+    return PartFacts(name=part, volume=volume, area=area, low=low, high=high)
 
 
 def distance_to(point: Array, corners: Array) -> float:

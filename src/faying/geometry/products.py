@@ -63,19 +63,10 @@ def read_products(text: str) -> Products:
     for found in _ENTITY.finditer(text):
         kind = found[2].replace("_WITH_SPECIFIED_SOURCE", "").replace("_WITH_ASSOCIATED_DOCUMENTS", "")
         entities.setdefault(kind, {})[int(found[1])] = list(_arguments(text, found.end()))
-    products = {number: _name(words) for number, words in entities.get("PRODUCT", {}).items()}
-    formations = {
-        number: products[at]
-        for number, words in entities.get("PRODUCT_DEFINITION_FORMATION", {}).items()
-        for at in words
-        if isinstance(at, int) and at in products
-    }
-    names = {
-        number: formations[at]
-        for number, words in entities.get("PRODUCT_DEFINITION", {}).items()
-        for at in words
-        if isinstance(at, int) and at in formations
-    }
+    names = {number: _name(words) for number, words in entities.get("PRODUCT", {}).items()}
+    for kind in ("PRODUCT_DEFINITION_FORMATION", "PRODUCT_DEFINITION"):  # each refers to one of the kind before
+        made = entities.get(kind, {}).items()
+        names = {number: names[at] for number, words in made for at in words if isinstance(at, int) and at in names}
     occurrences = []
     for words in entities.get("NEXT_ASSEMBLY_USAGE_OCCURRENCE", {}).values():
         texts = [word for word in words if isinstance(word, str)]

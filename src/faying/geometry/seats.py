@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from faying.fe.line import FACING, Line, across
 from faying.geometry.bores import FULL_TURN, LEVEL, Bore
-from faying.geometry.face_facts import FACING, FaceFacts, GeometryFacts
-from faying.geometry.seen_along import across, circle, hits
+from faying.geometry.face_facts import FaceFacts, GeometryFacts
+from faying.geometry.seen_along import circle, hits
 
 CONE = 1e-3  # of the radius: how far the points of a face lie from a cone that it counts as
 FARTHEST = 4.0  # outer diameters of a seat beyond the end of a bore, up to which lips are sought
@@ -38,9 +39,7 @@ def countersink(facts: GeometryFacts, bore: Bore, *, top: bool) -> Countersink |
         face = facts.face(bore.part, number)
         if face.kind != "other":
             continue
-        arm = facts.triangles(face).reshape(-1, 3) - bore.point
-        depth = arm @ outwards
-        radius = np.linalg.norm(arm - np.outer(depth, outwards), axis=1)
+        radius, depth = Line(point=bore.point, axis=outwards).about(facts.triangles(face))
         if np.ptp(depth) <= LEVEL or np.ptp(radius) <= CONE * bore.radius:
             continue
         slope, rest = np.polyfit(depth, radius, 1)
@@ -67,7 +66,7 @@ def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tup
         ring: inner and outer diameter of the seat [m].
     """
     outwards = bore.axis if top else -bore.axis
-    plane, origin = across(outwards), bore.at(bore.high if top else bore.low)
+    plane, origin = across(outwards), bore.line.at(bore.high if top else bore.low)
     far = FARTHEST * ring[1]
     faces = [
         face
@@ -84,9 +83,7 @@ def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tup
     near &= np.all((flat.min(axis=1) < ring[1] / 2) & (flat.max(axis=1) > -ring[1] / 2), axis=1)
     flat, depth, owner = flat[near], depth[near], owner[near]
     levels = {
-        k: float(depth[owner == k].mean())
-        for k in np.unique(owner).tolist()
-        if faces[k].normal is not None and np.array(faces[k].normal) @ outwards > FACING
+        k: float(depth[owner == k].mean()) for k in np.unique(owner).tolist() if faces[k].facing(outwards) > FACING
     }
     points = np.concatenate([circle(r) for r in np.linspace(ring[0] / 2, ring[1] / 2, RADII + 2)[1:-1]])
     over, deep = hits(flat, depth, points)

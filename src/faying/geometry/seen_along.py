@@ -7,13 +7,6 @@ from faying.typing import Array, Mask
 RING = 48  # points round a circle
 
 
-def across(axis: Array) -> Array:
-    """Two unit directions (3, 2) across an axis."""
-    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    one /= np.linalg.norm(one)
-    return np.stack([one, np.cross(axis, one)], axis=1)
-
-
 def circle(radius: float) -> Array:
     """Points (p, 2) [m] round a circle about the axis."""
     angle = 2 * np.pi * (np.arange(RING) + 0.25) / RING

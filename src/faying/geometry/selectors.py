@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from faying.errors import InputError
-from faying.geometry.face_facts import FACING, FaceFacts, GeometryFacts, Point
+from faying.fe.line import FACING
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, Point
 from faying.units import show, show_area
 
 WITHIN = 1e-3  # m: a point farther from a face than this does not mean it
@@ -99,7 +100,7 @@ def chosen(label: str, selector: Selector, facts: GeometryFacts, *, snap: float 
             )
     if selector.normal is not None:
         along = np.array(selector.normal)
-        left = [face for face in left if face.normal is not None and np.array(face.normal) @ along >= FACING]
+        left = [face for face in left if face.facing(along) >= FACING]
     if selector.touching is not None:
         left = _touching(label, selector, facts, left, max(snap, TOUCHING * facts.size))
     if selector.nearest is not None and left:

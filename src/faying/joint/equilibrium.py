@@ -279,9 +279,8 @@ class Equilibrium(ABC):
         for (_, p, _), (_, law), friction, anchor in zip(
             self._state(u), self.joints, self.friction, self._anchors, strict=True
         ):
-            slip_states.append(
-                StickSlip(k_t=law.stiffness(p)[1], limit=None if friction is None else friction * p, anchor=anchor)
-            )
+            k_t, limit = law.stiffness(p, tabulated=True)[1], None if friction is None else friction * p
+            slip_states.append(StickSlip(k_t=k_t, limit=limit, anchor=anchor))
         return slip_states
 
     def _out_of_balance(self, u: Array, load: Array, slip_states: Sequence[StickSlip]) -> Array:

@@ -13,6 +13,7 @@ from faying.joint.pressure_curve import PressureCurve, fade
 from faying.joint.springs import Motion, Springs
 from faying.typing import Array
 
+FEW = 200  # pressures that take no longer to invert than a table to make
 TABLE_PRESSURES = 2000  # steps of 1 % of a pressure over nine decades: k between them is right to 1e-5
 MIN_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
 MIN_SHARE = 0.01  # of a joint's stiffness, worth at most half of that in a frequency: less is not said
@@ -56,7 +57,10 @@ class LawTable:
     @cached_property
     def stiffness(self) -> tuple[Array, Array]:
         """k_n and k_t [Pa/m] there."""
-        at = self.response
+        return self.stiffness_of(self.response)
+
+    def stiffness_of(self, at: Response) -> tuple[Array, Array]:
+        """k_n and k_t [Pa/m] where the law has been asked."""
         if at.k_n is None:
             raise InputError(f"{self.model.name} defines no normal stiffness; choose another law for the joint")
         factor: Array | float = 1.0
@@ -231,15 +235,20 @@ class JointLaw:
         shares = {reason: float(stiffness @ mask) / total for reason, mask in reasons}
         return {reason: round(share, 6) for reason, share in shares.items() if share >= MIN_SHARE}
 
-    def stiffness(self, pressure: Array) -> tuple[Array, Array]:
+    def stiffness(self, pressure: Array, *, tabulated: bool = False) -> tuple[Array, Array]:
         """k_n and k_t [Pa/m] at pressures [Pa] of any shape.
 
-        0 where the pressure is 0, constant beyond the end of the law.
+        0 where the pressure is 0, constant beyond the end of the law. The law is asked for up to `FEW` pressures; more,
+        and those of an iteration (tabulated), are read from its table, which is right to 1e-5.
         """
         within = self.table.within(pressure)
         light = within > pressure
         fade = np.where(light, pressure / np.where(light, within, 1.0), within > 0) ** self.table.fade
-        k_n, k_t = (self.scale * fade * np.exp(self.table.between(within, k)) for k in self.table.log_stiffness)
+        if tabulated or np.size(pressure) > FEW:
+            found = [np.exp(self.table.between(within, k)) for k in self.table.log_stiffness]
+        else:
+            found = list(self.table.stiffness_of(self.model.at_pressure(within)))
+        k_n, k_t = (self.scale * fade * k for k in found)
         return k_n, k_t
 
     def loss(self, pressure: Array) -> tuple[Array, Array]:

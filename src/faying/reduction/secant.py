@@ -142,7 +142,7 @@ class Secants:
         for (motion, law), friction, move in zip(self.joints, self.friction, moves, strict=True):
             gap = move[:, 0] + motion.gap
             p, k_n = law.pressure(-gap)
-            k_t = law.stiffness(p)[1]
+            k_t = law.stiffness(p, tabulated=True)[1]
             limit = None if friction is None else friction * p
             slip_state = StickSlip(k_t=k_t, limit=limit, anchor=np.zeros((len(p), 2)))
             local = np.empty_like(move)

@@ -1,18 +1,20 @@
 """A bolt that a study may have: what it presses on, its size, how far it is tightened, and the bodies it stands for."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import floor, log10
 
 import numpy as np
 
 from faying.bolt.compliance import Head
-from faying.bolt.threads import STRENGTH_THICK, Fastener, Thread, is_graded
+from faying.bolt.threads import THICK_CLASS, Fastener, Thread, is_graded
 from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
 from faying.bolt.vdi2230 import greatest_preload
-from faying.geometry.face_facts import FaceFacts, Point
+from faying.geometry.face_facts import FaceFacts, Point, point_of
 from faying.typing import Array
 
 GRADE = "8.8"  # of the bolts
+MAX_NAMES = 2  # bolts that a line names one by one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,16 +25,15 @@ class DrawnBodies:
         names: the one with the stem, its nuts, its washers.
         washers: inner, outer diameter and thickness of each washer [m].
         shank: length of the plain shank [m], where it is drawn apart from the thread.
-        volumes: [m3] that rest on the head's side and at the end: all but the shank between the seats.
-        has_end: whether a nut or a thread is drawn.
+        volumes: [m3] that rest on the head's side and at the end: all but the shank between the seats; None at the end
+            where neither a nut nor a thread is drawn.
         holes: part and number of the faces of all holes that are its own.
     """
 
     names: tuple[str, ...]
     washers: tuple[tuple[float, float, float], ...]
     shank: float | None
-    volumes: tuple[float, float]
-    has_end: bool
+    volumes: tuple[float, float | None]
     holes: frozenset[tuple[str, int]]
 
 
@@ -83,13 +84,18 @@ class BoltProposal:
         if self.size is None:
             return None
         thread = Thread.coarse(self.size * 1e-3)
-        strength = Fastener(thread=thread, grade=GRADE).yield_stress if self.graded else STRENGTH_THICK[1]
+        strength = Fastener(thread=thread, grade=GRADE).yield_stress if self.graded else THICK_CLASS[1]
         return rounded(greatest_preload(thread, strength, scatter=TIGHTENING[DEFAULT_WAY].scatter), 3, up=False)
 
     @property
     def graded(self) -> bool:
         """Whether ISO 898-1 has strengths for its thread."""
         return self.size is not None and is_graded(Thread.coarse(self.size * 1e-3))
+
+
+def grouped(names: Sequence[str]) -> str:
+    """Names of bolts that are alike on one line: each of a few, else how many they are, the first and the last."""
+    return ", ".join(names) if len(names) <= MAX_NAMES else f"{len(names)} bolts ({names[0]} to {names[-1]})"
 
 
 def rounded(value: float, digits: int, *, up: bool | None = None) -> float:
@@ -101,5 +107,4 @@ def rounded(value: float, digits: int, *, up: bool | None = None) -> float:
 
 def to_nanometres(place: Array) -> Point:
     """A point (3,) [m] to the last digit that a study needs."""
-    x, y, z = (round(float(value), 9) + 0.0 for value in place)
-    return x, y, z
+    return point_of(place, 9)

@@ -13,13 +13,17 @@ from faying.text import toml
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 # comments by which `faying new` says where a value is from, or what follows from it
 _OF_VALUE = re.compile(r"[ \t]*#[ \t]*(?:ASSUMED|drawn|[\d.]+ [mc]?m2)\b[^\r\n]*|(?<=# largest element):[^\r\n]*")
+_ABOVE = re.compile(
+    r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE
+)  # comments right above a place, which are of what begins there
 _BLANK = re.compile(r"[ \t]*\r?\n")
 
 
 def edited(text: str, path: KeyPath, value: Any) -> str:
     """Return a TOML text with one value set, added or taken out; all other lines stay as they are.
 
-    Comments stay, too, but for those by which `faying new` says where the value was from, such as "ASSUMED".
+    Comments stay, too, but for those by which `faying new` says where the value was from, such as "ASSUMED", and those
+    right above a table of a list that is taken out.
 
     Args:
         text: the study.
@@ -137,7 +141,8 @@ def _edit(text: str, data: dict[str, Any], wanted: dict[str, Any], path: KeyPath
         return _replaced(text, holder, _at(wanted, holder.path))
     if value is None:
         for one in reversed([one for one in every if one.path[: len(path)] == path]):
-            text = text[: one.start] + text[one.end :]
+            above = _ABOVE.search(text, 0, one.start) if text.startswith("[[", one.start) else None
+            text = text[: above.start() if above else one.start] + text[one.end :]
         return text
     if holder is not None:
         return _replaced(text, holder, value)

@@ -22,7 +22,7 @@ class FaceNames:
 
     def of(self, face: FaceFacts, word: str, touching: str | None = None) -> str:
         """The name of a face; word: what it is for; touching: the part that it touches, if it does."""
-        key = (face.part, face.number)
+        key = face.side
         if key not in self.given:
             alike = [one for one in self.facts.faces if one.name == face.name]
             if face.name and len(alike) == 1:

@@ -1,66 +1,50 @@
 """Dowels of a geometry: pins that are drawn as parts, and rows of holes of one diameter that take a pin."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
 
 from faying.bolt.standards import COMMON_PINS, is_tapped, size_for_hole
 from faying.geometry.bores import Bore, Stack, bores, rows, seat
-from faying.geometry.face_facts import FaceFacts, GeometryFacts
+from faying.geometry.face_facts import GeometryFacts
 from faying.setup.face_names import FaceNames
-from faying.setup.fasteners import Fasteners, Point
+from faying.setup.fasteners import DowelProposal, Fasteners
 from faying.units import show
 
 ALIKE = 1e-3  # of a diameter: holes that differ by less have one
 
 
-@dataclass(frozen=True, kw_only=True)
-class DowelProposal:
-    """A dowel: what tables call it, names of its walls, its ends [m] where no hole says them, where it is from."""
-
-    name: str
-    walls: tuple[str, ...]
-    ends: tuple[Point, Point] | None = None
-    remark: str = ""
-
-
-def found_dowels(facts: GeometryFacts, fasteners: Fasteners, names: FaceNames) -> tuple[DowelProposal, ...]:
+def found_dowels(
+    facts: GeometryFacts, fasteners: Fasteners, free: Sequence[Stack], names: FaceNames
+) -> tuple[DowelProposal, ...]:
     """The dowels of a geometry.
 
     Args:
         facts: of the parts that are not left out.
-        fasteners: pins that are drawn, and parts that are bolts.
+        fasteners: has the pins that are drawn.
+        free: rows of holes in which nothing of the file runs.
         names: gives their walls names.
     """
-    parts = {part.name for part in facts.parts}
-    found: list[DowelProposal] = []
-
-    def add(walls: Iterable[Sequence[FaceFacts]], remark: str, ends: tuple[Point, Point] | None = None) -> None:
-        named = tuple(names.of_several(wall, "dowel") for wall in walls)
-        found.append(DowelProposal(name=f"dowel {len(found) + 1}", walls=named, ends=ends, remark=remark))
-
+    found = []
     for pin in fasteners.dowels:
-        walls: dict[str, list[FaceFacts]] = {}
-        for hole in pin.holes:
-            if hole.part in parts:
-                walls.setdefault(hole.part, []).append(hole)
-        if len(walls) > 1:
-            remark = f"{show(2 * (pin.shank.radius or 0.0), 'm')}, a pin of the file"
-            remark += (
-                "; it is hollow and counts as solid, too stiff and too heavy: take it out or soften it" * pin.hollow
-            )
-            add(walls.values(), remark, pin.ends)
-    for stack in free_rows(facts, fasteners):
+        walls = tuple(wall for wall in pin.faces if wall[0].part in facts.by_part)
+        found += [replace(pin, faces=walls)] if len(walls) > 1 else []
+    for stack in free:
         if takes_dowel(facts, stack):
-            wide = show(2 * stack.bores[0].radius, "m")
-            walls_of = [[facts.face(bore.part, number) for number in bore.faces] for bore in stack.bores]
-            add(walls_of, f"{wide} (ISO 2338), as long as its holes; take it out if there is none")
-    return tuple(found)
+            walls = tuple(tuple(facts.face(bore.part, number) for number in bore.faces) for bore in stack.bores)
+            remark = (
+                f"{show(2 * stack.bores[0].radius, 'm')} (ISO 2338), as long as its holes; take it out if there is none"
+            )
+            found.append(DowelProposal(faces=walls, remark=remark))
+    return tuple(
+        replace(pin, name=f"dowel {k}", walls=tuple(names.of_several(wall, "dowel") for wall in pin.faces))
+        for k, pin in enumerate(found, 1)
+    )
 
 
 def free_rows(facts: GeometryFacts, fasteners: Fasteners) -> list[Stack]:
     """The rows of holes in which no bolt and no dowel of the file runs."""
-    aside = {bolt.part for bolt in fasteners.meshed} | {*fasteners.washers}
-    drawn = {side for bolt in fasteners.drawn if bolt.drawn for side in bolt.drawn.holes}
+    aside = {bolt.part for bolt in fasteners.bolts} | {*fasteners.washers}
+    drawn = {side for bolt in fasteners.bolts if bolt.drawn for side in bolt.drawn.holes}
     left = [bore for bore in bores(facts) if bore.part not in aside and drawn.isdisjoint(bore.sides)]
     found = rows(left, reach=0.01 * facts.size)
     return [stack for stack in found if not any(fasteners.shanks & bore.sides for bore in stack.bores)]

@@ -14,7 +14,8 @@ from faying.bolt.bolt import BoltPlace
 from faying.bolt.solid_bolt import SolidPlace
 from faying.bolt.vdi2230 import cone_angle
 from faying.fe.faces import NamedFaces
-from faying.geometry.seen_along import RING, across, circle, hits
+from faying.fe.line import across
+from faying.geometry.seen_along import RING, circle, hits
 from faying.joint.load_path import seat_ring
 from faying.typing import Array
 

@@ -9,6 +9,7 @@ import numpy as np
 from faying.bolt.standards import nearest_size
 from faying.decks.meshfile import read_mesh, read_pretensions
 from faying.decks.raw import Pretension
+from faying.fe.line import across
 from faying.fe.mesh import Mesh
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.mesh_facts import mesh_facts
@@ -99,8 +100,8 @@ def _bolt(
     for face in facts.by_part[part]:
         thread = mesh.is_shared(face.name)  # what holds it there is one with it
         depth = float((np.array(face.centre) - middle) @ axis)
-        back = face.normal is not None and float(np.array(face.normal) @ axis) * np.sign(-depth) > ALONG
-        if thread or (back and (part, face.number) in met):
+        back = face.facing(axis) * np.sign(-depth) > ALONG
+        if thread or (back and face.side in met):
             seats[depth > 0].append(face)
     if not seats[True] or not seats[False]:
         return (
@@ -140,7 +141,6 @@ def _size(places: Array, axis: Array) -> float | None:
     """Nominal diameter [mm] of a round section; None where it is none of a common bolt."""
     from scipy.spatial import ConvexHull
 
-    flat = np.linalg.svd(np.eye(3) - np.outer(axis, axis))[0][:, :2]
-    area = ConvexHull((places - places.mean(axis=0)) @ flat).volume  # of a plane figure it is the area
+    area = ConvexHull((places - places.mean(axis=0)) @ across(axis)).volume  # of a plane figure it is the area
     wide = 1e3 * sqrt(4 * area / pi)
     return nearest_size(wide, lambda one: one.size, ROUND)

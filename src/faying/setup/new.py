@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
@@ -15,11 +16,10 @@ from faying.files import together, write_atomically, write_text
 from faying.geometry.selectors import AXES, Selector
 from faying.materials import CATALOGUE
 from faying.misuse import checked_call
-from faying.setup.bolt_names import grouped
-from faying.setup.bolt_proposal import GRADE, BoltProposal
+from faying.setup.bolt_proposal import GRADE, BoltProposal, grouped
 from faying.setup.edit import written as quoted
 from faying.setup.faces import faces
-from faying.setup.found_dowels import DowelProposal
+from faying.setup.fasteners import DowelProposal
 from faying.setup.mesh_proposal import propose_mesh
 from faying.setup.proposal import Proposal, propose
 from faying.setup.template import SCHEMA, surface
@@ -28,6 +28,7 @@ from faying.text import cut
 from faying.units import show, show_area
 
 STEEL = "S355"
+COLUMNS = 100  # of the comments that are wrapped
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -210,7 +211,7 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         "[modes]\ncount = 10                     # elastic modes\n",
     ]
     assumed += _assumed_of_bolts(proposal.bolts, answers)
-    assumed += _alike((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
+    assumed += alike((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
     assumed.append("no support: the structure is free")
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
@@ -236,163 +237,157 @@ SUPPORT = """# Assumed: the structure is free. A face that is held:
 """
 
 
+def _table(*lines: str) -> str:
+    """A table of the study, of those lines that hold something."""
+    return "\n".join([*filter(None, lines), ""])
+
+
+def _comment(text: str) -> str:
+    """Lines of a comment."""
+    lines = wrap(_plain(text), COLUMNS - 2, break_long_words=False, break_on_hyphens=False)
+    return "\n".join(f"# {line}" for line in lines)
+
+
+def _line(key: str, value: Any, why: str = "") -> str:
+    """A key with its value and a comment; "" where there is no value."""
+    return f"{key} = {quoted(value)}{f'  # {why}' if why else ''}" if value else ""
+
+
+def _length(value: float | None) -> str:
+    """A length [m] as the study writes it, "" where it is not known."""
+    return "" if value is None else show(value, "m")
+
+
 def _head(proposal: Proposal, step: Path, out: Path) -> str:
-    lines = [
+    return _table(
         SCHEMA,
         f"# Written by faying new from {_plain(step.name)}. Lines marked ASSUMED are guesses: make them yours.",
         f"# Look at it with: faying check {_plain(out.name)}; run it with: faying run {_plain(out.name)}",
-        *(f"# Note: {_plain(remark)}" for remark in proposal.remarks),
-        f"title = {quoted(step.stem)}",
-        "",
-    ]
-    return "\n".join(lines)
+        *(_comment(f"Note: {remark}") for remark in proposal.remarks),
+        _line("title", step.stem),
+    )
 
 
 def _geometry(proposal: Proposal, step: str) -> str:
-    elements = f"about {proposal.unknowns:,} unknowns"
+    snap = _length(proposal.snap or None)
     if proposal.unit:
-        lines = ["[geometry]", f"mesh = {quoted(step)}", f"unit = {quoted(proposal.unit)}"]
-        if proposal.snap:
-            lines.append(f'snap = "{show(proposal.snap, "m")}"  # ASSUMED: gaps between faces up to this are none')
-        if proposal.sets:
-            lines.append("[geometry.sets]  # parts that are several sets of the file, or bodies of it")
-        lines += [f"{quoted(part)} = {quoted(some)}" for part, some in proposal.sets.items()]
-        return "\n".join([*lines, ""])
-    lines = [
+        return _table(
+            "[geometry]",
+            _line("mesh", step),
+            _line("unit", proposal.unit),
+            _line("snap", snap, "ASSUMED: gaps between faces up to this are none"),
+            "[geometry.sets]  # parts that are several sets of the file, or bodies of it" if proposal.sets else "",
+            *(_line(quoted(part), some) for part, some in proposal.sets.items()),
+        )
+    return _table(
         "[geometry]",
-        f"step = {quoted(step)}",
-        f'size = "{show(proposal.size, "m")}"  # largest element: {elements}',
-    ]
-    if proposal.snap:
-        lines.append(f'snap = "{show(proposal.snap, "m")}"  # ASSUMED: gaps of the CAD model up to this are none')
-    if proposal.left_out:
-        lines.append(f"leave_out = {quoted(proposal.left_out)}  # parts of the file that are not meshed")
-    if proposal.faces:
-        lines.append(f"[geometry.face]  # names for faces; `faying faces {_plain(step)}` lists all of them")
-    lines += [f"{quoted(name)} = {selector_text(one)}" for name, one in proposal.faces.items()]
-    return "\n".join([*lines, ""])
+        _line("step", step),
+        _line("size", _length(proposal.size), f"largest element: about {proposal.unknowns:,} unknowns"),
+        _line("snap", snap, "ASSUMED: gaps of the CAD model up to this are none"),
+        _line("leave_out", proposal.left_out, "parts of the file that are not meshed"),
+        f"[geometry.face]  # names for faces; `faying faces {_plain(step)}` lists all of them" * bool(proposal.faces),
+        *(_line(quoted(name), selector_table(one)) for name, one in proposal.faces.items()),
+    )
 
 
-def selector_text(selector: Selector) -> str:
-    """A selector as the study writes it."""
-    words = [f"part = {quoted(selector.part)}"]
-    if selector.touching is not None:
-        words.append(f"touching = {quoted(selector.touching)}")
-    if selector.normal is not None:
-        word = next((w for w, axis in AXES.items() if axis == selector.normal), None)
-        words.append(f"normal = {quoted(word) if word else list(selector.normal)}")
-    if selector.number is not None:
-        numbers = list(selector.numbers)
-        words.append(f"number = {numbers if len(numbers) > 1 else numbers[0]}")
-    return "{ " + ", ".join(words) + " }"
+def selector_table(selector: Selector) -> dict[str, Any]:
+    """A selector as the study has it."""
+    normal, numbers = selector.normal, list(selector.numbers)
+    word = next((word for word, axis in AXES.items() if axis == normal), normal)
+    which = numbers if len(numbers) > 1 else next(iter(numbers), None)
+    keys = {"part": selector.part, "touching": selector.touching, "normal": word, "number": which}
+    return {key: value for key, value in keys.items() if value is not None}
 
 
 def _parts(proposal: Proposal, answers: Answers, assumed: list[str]) -> str:
-    lines = [
-        f"# The catalogue has {', '.join(CATALOGUE)}; [material.NAME] describes one of your own.",
-        '# Of a part weighed and rung alone: mass = "1.234 kg", frequencies = ["512 Hz", "1.4 kHz"], its free modes.',
-    ]
-    guessed = []
-    for part in proposal.facts.parts:
-        material = answers.materials.get(part.name)
-        lines.append(f"[part.{quoted(part.name)}]")
-        lines.append(f"material = {quoted(material or STEEL)}{'' if material else '  # ASSUMED'}")
-        guessed += [] if material else [part.name]
+    given = {part.name: answers.materials.get(part.name) for part in proposal.facts.parts}
+    guessed = [part for part, material in given.items() if not material]
     if guessed:
         assumed.append(f"{STEEL} steel for {', '.join(guessed)}")
-    return "\n".join([*lines, ""])
+    lines = []
+    for part, material in given.items():
+        lines += [f"[part.{quoted(part)}]", _line("material", material or STEEL, "" if material else "ASSUMED")]
+    return _table(
+        f"# The catalogue has {', '.join(CATALOGUE)}; [material.NAME] describes one of your own.",
+        '# Of a part weighed and rung alone: mass = "1.234 kg", frequencies = ["512 Hz", "1.4 kHz"], its free modes.',
+        *lines,
+    )
 
 
 def _surface(out: Path, answers: Answers, assumed: list[str]) -> str:
     if answers.scan is None:
         scan = scan_name(out)
         assumed.append(f"the surface {scan}, a synthetic fine finish of 0.5 um rms height, on both faces: scan yours")
-        mark = "  # ASSUMED: synthetic, fine finish, 0.5 um rms height; put the scan of your face here"
+        mark = "ASSUMED: synthetic, fine finish, 0.5 um rms height; put the scan of your face here"
     else:
         scan, mark = _relative(answers.scan, out), ""
         assumed.append("the other face of each joint is alike but unrelated (surface.counter)")
-    lines = [
-        "# The rough surface: the scan of one face, laid on every joint. [joint.surface] gives one to a joint alone.",
-        "[surface]",
-        f"scan = {quoted(scan)}{mark}",
-        'counter = "same"  # ASSUMED: the other face is alike but unrelated; "smooth", or the file of its own scan',
-        "",
-        "[law]",
-        'model = "auto"  # the contact solved on the scan, or the law nearest to it; `faying models` lists others',
-        "",
-    ]
-    return "\n".join(lines)
+    other = 'ASSUMED: the other face is alike but unrelated; "smooth", or the file of its own scan'
+    law = "the contact solved on the scan, or the law nearest to it; `faying models` lists others"
+    lines = _line("scan", scan, mark), _line("counter", "same", other)
+    head = "# The rough surface: the scan of one face, laid on every joint. [joint.surface] gives one to a joint alone."
+    return "\n".join([head, _table("[surface]", *lines), _table("[law]", _line("model", "auto", law))])
 
 
 def _joints(proposal: Proposal) -> str:
-    lines = []
+    tables = []
     for joint in proposal.joints:
         gap = f", {show(joint.gap, 'm')} apart" if abs(joint.gap) > 1e-9 else ""
-        lines += [
-            "[[joint]]",
-            f"name = {quoted(joint.name)}",
-            f"faces = {quoted(joint.faces)}  # {show_area(joint.area)}{gap}",
-            "",
-        ]
-    return "\n".join(lines)
+        faces = _line("faces", joint.faces, f"{show_area(joint.area)}{gap}")
+        tables.append(_table("[[joint]]", _line("name", joint.name), faces))
+    return "\n".join(tables)
 
 
 def _bolt(bolt: BoltProposal, answers: Answers) -> str:
-    lines = [f"[[bolt]]  # {_plain(bolt.remark)}", f"name = {quoted(bolt.name)}"]
-    lines.append(f"faces = {quoted(bolt.faces)}")
-    if bolt.part is not None:
-        lines.append(f"part = {quoted(bolt.part)}")
-        lines += [f"at = {_millimetres(bolt.at)}"] if bolt.at is not None else []
-        lines += [f'thread = "M{bolt.size:g}"', *_grade(bolt)] if bolt.size and bolt.graded else []
-    else:
-        assert bolt.ring is not None
-        inner, outer = (show(d, "m") for d in bolt.ring)
-        if bolt.at is not None:
-            lines.append(f"at = {_millimetres(bolt.at)}")
-        lines += [
-            f'seat = ["{inner}", "{outer}"]',
-            f'diameter = "{bolt.size:g} mm"',
-            f"material = {quoted(STEEL)}",
-            *_grade(bolt),
-            *_as_drawn(bolt),
-        ]
+    meshed, drawn = bolt.part is not None, bolt.drawn
+    density = CATALOGUE[STEEL].density or 0.0
+    volumes = (None, None) if drawn is None else drawn.volumes
+    head_mass, nut_mass = ("" if one is None else show(one * density, "kg", digits=6) for one in volumes)
     if answers.preload is not None:
-        lines.append(f'preload = "{show(answers.preload, "N", digits=6)}"')
+        preload = _line("preload", show(answers.preload, "N", digits=6))
     elif bolt.force is not None:
-        lines.append(f'preload = "{bolt.force:.9g} N"  # ASSUMED: the force of the file, taken as newtons')
+        preload = _line("preload", f"{bolt.force:.9g} N", "ASSUMED: the force of the file, taken as newtons")
     elif bolt.preload is not None:
-        lines.append(f'preload = "{show(bolt.preload, "N")}"  # ASSUMED: {_share()}')
+        preload = _line("preload", show(bolt.preload, "N"), f"ASSUMED: {_share()}")
     else:
-        lines.append('# preload = "10 kN"  # give the force; its thread is not known')
-    for washer in () if bolt.drawn is None else bolt.drawn.washers:
-        sizes = zip(("inner", "outer", "thickness"), washer, strict=True)
-        lines += ["[[bolt.washer]]", *(f'{key} = "{show(d, "m")}"' for key, d in sizes), f"material = {quoted(STEEL)}"]
-    return "\n".join([*lines, ""])
+        preload = '# preload = "10 kN"  # give the force; its thread is not known'
+    return _table(
+        _comment(bolt.remark),
+        "[[bolt]]",
+        _line("name", bolt.name),
+        _line("faces", bolt.faces),
+        _line("part", bolt.part),
+        _line("at", bolt.at and _millimetres(bolt.at)),
+        _line("seat", bolt.ring and [_length(diameter) for diameter in bolt.ring]),
+        _line("thread", meshed and bolt.graded and f"M{bolt.size:g}"),
+        _line("diameter", not meshed and f"{bolt.size:g} mm"),
+        _line("material", not meshed and STEEL),
+        _line("grade", bolt.graded and GRADE, "ASSUMED"),
+        _line("head", bolt.shape != "hexagon" and bolt.shape),
+        _line("engaged", _length(bolt.engaged)),
+        _line("shank", drawn and _length(drawn.shank)),
+        _line("head_mass", head_mass, "drawn: what of its bodies is not the shank"),
+        _line("nut_mass", nut_mass, "drawn: nut, or end of the screw"),
+        preload,
+        *map(_washer, () if drawn is None else drawn.washers),
+    )
 
 
-def _grade(bolt: BoltProposal) -> list[str]:
-    return [f'grade = "{GRADE}"  # ASSUMED'] if bolt.graded else []
-
-
-def _as_drawn(bolt: BoltProposal) -> list[str]:
-    """Keys of the head and the thread, and of the masses that are drawn."""
-    lines = [f"head = {quoted(bolt.shape)}"] if bolt.shape != "hexagon" else []
-    lines += [f'engaged = "{show(bolt.engaged, "m")}"'] if bolt.engaged is not None else []
-    if bolt.drawn is not None:
-        lines += [f'shank = "{show(bolt.drawn.shank, "m")}"'] if bolt.drawn.shank is not None else []
-        kilos = [volume * (CATALOGUE[STEEL].density or 0.0) for volume in bolt.drawn.volumes]
-        lines.append(f'head_mass = "{show(kilos[0], "kg", digits=6)}"  # drawn: what of its bodies is not the shank')
-        if bolt.drawn.has_end:
-            lines.append(f'nut_mass = "{show(kilos[1], "kg", digits=6)}"  # drawn: nut, or end of the screw')
-    return lines
+def _washer(sizes: tuple[float, float, float]) -> str:
+    lengths = zip(("inner", "outer", "thickness"), map(_length, sizes), strict=True)
+    lines = [_line(key, length) for key, length in lengths]
+    return _table("[[bolt.washer]]", *lines, _line("material", STEEL)).rstrip()
 
 
 def _dowel(dowel: DowelProposal) -> str:
-    lines = [f"[[dowel]]  # {_plain(dowel.remark)}", f"name = {quoted(dowel.name)}"]
-    lines.append(f"walls = {quoted(dowel.walls)}  # ASSUMED: it fits them without play")
-    if dowel.ends is not None:
-        lines.append(f"ends = [{', '.join(map(_millimetres, dowel.ends))}]")
-    return "\n".join([*lines, f"material = {quoted(STEEL)}  # ASSUMED", ""])
+    return _table(
+        _comment(dowel.remark),
+        "[[dowel]]",
+        _line("name", dowel.name),
+        _line("walls", dowel.walls, "ASSUMED: it fits them without play"),
+        _line("ends", dowel.ends and [_millimetres(end) for end in dowel.ends]),
+        _line("material", STEEL, "ASSUMED"),
+    )
 
 
 def _share() -> str:
@@ -411,10 +406,10 @@ def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[s
         else:
             words = "no preload; its thread is not known: give one"
         remarks.append((bolt.name, words))
-    return _alike(remarks)
+    return alike(remarks)
 
 
-def _alike(remarks: Iterable[tuple[str, str]]) -> list[str]:
+def alike(remarks: Iterable[tuple[str, str]]) -> list[str]:
     """What is said of each name; names of which one thing is said have one line."""
     groups: dict[str, list[str]] = {}
     for name, words in remarks:
@@ -422,9 +417,9 @@ def _alike(remarks: Iterable[tuple[str, str]]) -> list[str]:
     return [f"{grouped(names)}: {words}" for words, names in groups.items()]
 
 
-def _millimetres(point: Sequence[float]) -> str:
+def _millimetres(point: Sequence[float]) -> list[str]:
     """A point [m] as the study writes it."""
-    return quoted([f"{1e3 * x:.9g} mm" for x in point])
+    return [f"{1e3 * x:.9g} mm" for x in point]
 
 
 def _relative(file: Path, out: Path) -> str:

@@ -13,9 +13,9 @@ from faying.memory import available
 from faying.setup.bolt_proposal import BoltProposal, rounded
 from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
-from faying.setup.fasteners import find_fasteners, quoted
-from faying.setup.found_bolts import LeftOut, clamped_along, found_bolts, shoulder_remark, shoulders
-from faying.setup.found_dowels import DowelProposal, found_dowels
+from faying.setup.fasteners import DowelProposal, find_fasteners, quoted
+from faying.setup.found_bolts import found_bolts
+from faying.setup.found_dowels import found_dowels, free_rows
 from faying.units import show
 
 ROOM = 0.7  # of the free memory that a proposed run takes, whose unknowns are an estimate
@@ -93,23 +93,16 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
     alone = _alone(facts, path)
     facts = facts.without(alone)
     contacts = touching(facts)
-    left = LeftOut()
-    bolts = found_bolts(facts, fasteners, contacts, left)
-    apart = _apart(facts, contacts, bolts)
-    aside = shoulders(facts, contacts, bolts)
-    contacts = [contact for contact in contacts if contact not in aside and contact not in apart]
+    free = free_rows(facts, fasteners)
+    bolts, left = found_bolts(facts, fasteners, free, contacts)
+    contacts, unpressed = _pressed(facts, contacts, bolts)
     snap, remarks = snapped(facts, contacts)
     names = FaceNames(facts, snap)
     joints = named_joints(facts, contacts, names)
     remarks += fasteners.remarks
     if alone:
         remarks.append(f"{quoted(alone)}: no flat face touches another part; left out of the mesh (geometry.leave_out)")
-    if apart:
-        gap = show(max(contact.gap for contact in apart), "m")
-        text = f"{len(apart)} pairs of faces up to {gap} apart, which no bolt closes, are not joints: left out; add a "
-        remarks.append(text + "[[joint]] if they do meet")
-    remarks += [shoulder_remark(aside)] if aside else []
-    remarks += left.remarks
+    remarks += [*unpressed, *left]
     if not bolts:
         remarks.append("no bolt was found: fill in [[bolt]] by hand before you run the study")
     size, words = mesh_size(facts, {*(bolt.part for bolt in bolts), *fasteners.washers})
@@ -122,13 +115,12 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         )
         for k, bolt in enumerate(bolts, 1)
     )
-    dowels = found_dowels(facts, fasteners, names)
     return Proposal(
         facts=facts,
         faces=names.selectors,
         joints=joints,
         bolts=named_bolts,
-        dowels=dowels,
+        dowels=found_dowels(facts, fasteners, free, names),
         size=size,
         snap=snap,
         left_out=(*fasteners.left_out, *alone),
@@ -177,17 +169,33 @@ def touching(facts: GeometryFacts) -> list[TouchingFaces]:
     return [*touching, *(one for one in near if one.gap <= least[frozenset(one.parts)] + close)]
 
 
-def _apart(
+def _pressed(
     facts: GeometryFacts, contacts: Sequence[TouchingFaces], bolts: Sequence[BoltProposal]
-) -> list[TouchingFaces]:
-    """Faces that only nearly touch, of parts that no bolt clamps together and that other parts touch."""
+) -> tuple[list[TouchingFaces], list[str]]:
+    """The faces that are joints; and what there is to say of those that no bolt presses.
+
+    These only nearly touch, of parts that no bolt clamps together and that other parts touch, or touch along the bolts
+    of their two parts, as the shoulder of a stepped lap.
+    """
     close = TOUCHING * facts.size
     touched = {part for one in contacts if abs(one.gap) <= close for part in one.parts}
-    return [
-        one
-        for one in contacts
-        if abs(one.gap) > close and touched.issuperset(one.parts) and not clamped_along(bolts, *one.parts)
-    ]
+    apart, aside = [], []
+    for contact in contacts:
+        axes = [bolt.axis for bolt in bolts if {*contact.parts} <= {*bolt.parts}]
+        if not axes and abs(contact.gap) > close and touched.issuperset(contact.parts):
+            apart.append(contact)
+        elif axes and max(abs(facts.face(*contact.first).facing(axis)) for axis in axes) < 0.5:
+            aside.append(contact)
+    remarks = []
+    if apart:
+        gap = show(max(contact.gap for contact in apart), "m")
+        text = f"{len(apart)} pairs of faces up to {gap} apart, which no bolt closes, are not joints: left out; add a "
+        remarks.append(text + "[[joint]] if they do meet")
+    if aside:
+        between = "; ".join(quoted(pair) for pair in dict.fromkeys(contact.parts for contact in aside))
+        text = f"{len(aside)} pairs of faces that touch along the bolts of {between} (shoulders, registers) are not"
+        remarks.append(text + " joints, since no bolt presses them: left out; add a [[joint]] if they do carry load")
+    return [contact for contact in contacts if contact not in aside and contact not in apart], remarks
 
 
 def _alone(facts: GeometryFacts, path: Path) -> tuple[str, ...]:

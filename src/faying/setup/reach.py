@@ -14,8 +14,9 @@ from faying.contact.law import ContactLaw
 from faying.contact.mates import line_of
 from faying.contact.models.half_space import HalfSpace
 from faying.errors import FayingError, InputError
+from faying.fe.line import across
 from faying.form.face_axes import FaceAxes
-from faying.geometry.seen_along import across, hits
+from faying.geometry.seen_along import hits
 from faying.joint.joint_law import JointLaw
 from faying.joint.load_path import BoltLine, seat_ring
 from faying.materials import Material

@@ -37,5 +37,5 @@ class Sketch:
 
     def contacts(self, faces: tuple[str, str]) -> list[TouchingFaces]:
         """Where the faces of a joint look at each other."""
-        first, second = ({(f.part, f.number) for f in self.named[name]} for name in faces)
+        first, second = ({face.side for face in self.named[name]} for name in faces)
         return [c for c in self.facts.contacts if {c.first, c.second} & first and {c.first, c.second} & second]
