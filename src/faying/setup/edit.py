@@ -12,7 +12,10 @@ from faying.text import toml
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 # comments by which `faying new` says where a value is from, or what follows from it
-_OF_VALUE = re.compile(r"[ \t]*#[ \t]*(?:ASSUMED|drawn|[\d.]+ [mc]?m2)\b[^\r\n]*|(?<=# largest element):[^\r\n]*")
+_OF_VALUE = re.compile(
+    r"\A[ \t]*#[ \t]*(?:ASSUMED\b|drawn: |[\d.,]+ [mc]?m2(?:, [^\r\n]* apart)?[ \t\r]*$)[^\r\n]*"
+    r"|\A([ \t]*# largest element):[^\r\n]*"
+)
 _ABOVE = re.compile(
     r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE
 )  # comments right above a place, which are of what begins there
@@ -158,7 +161,7 @@ def _at(data: Any, path: KeyPath) -> Any:
 
 
 def _replaced(text: str, one: Statement, value: Any) -> str:
-    comment = _OF_VALUE.sub("", text[one.value_end : one.end], count=1)
+    comment = _OF_VALUE.sub(r"\1", text[one.value_end : one.end], count=1)
     return text[: one.value] + written(value) + comment + text[one.end :]
 
 

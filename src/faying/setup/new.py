@@ -29,6 +29,7 @@ from faying.units import show, show_area
 
 STEEL = "S355"
 COLUMNS = 100  # of the comments that are wrapped
+MIN_MASS = 1e-9  # kg: less is what rounding leaves of a volume
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -342,7 +343,9 @@ def _bolt(bolt: BoltProposal, answers: Answers) -> str:
     meshed, drawn = bolt.part is not None, bolt.drawn
     density = CATALOGUE[STEEL].density or 0.0
     volumes = (None, None) if drawn is None else drawn.volumes
-    head_mass, nut_mass = ("" if one is None else show(one * density, "kg", digits=6) for one in volumes)
+    head_mass, nut_mass = (
+        "" if not one or one * density < MIN_MASS else show(one * density, "kg", digits=6) for one in volumes
+    )
     if answers.preload is not None:
         preload = _line("preload", show(answers.preload, "N", digits=6))
     elif bolt.force is not None:
