@@ -19,31 +19,20 @@ from faying.case.engine import engine_of
 from faying.case.mesh_error import mesh_error
 from faying.case.solve import solve
 from faying.numerics.follow import same_group
-from tests.helpers.meshfiles import abaqus
+from tests.helpers.meshfiles import LOW_AND_HIGH, abaqus
 from tests.helpers.rings import discs
 from tests.helpers.voxels import voxels
 
 MM, MODES = 1e-3, 9
 LOWEST = slice(6)  # of those modes: these stay among them
 NEAR = 4e-3  # by which the small basis misses two modes that mix
-STUDY = """
-[geometry]
-mesh = "model.inp"
-unit = "mm"
-[part.low]
-material = "45 steel"
-[part.high]
-material = "45 steel"
-[surface]
-D = 2.39
-G = "1.53e-10 m"
-scan_area = "16 mm^2"
-[law]
-model = "jk"
-[modes]
+STUDY = (
+    LOW_AND_HIGH
+    + """[modes]
 count = 9
 levels = []
 """
+)
 JOINT = '[[joint]]\nname = "j{k}"\nfaces = ["low.top{k}", "high.bottom{k}"]\n'
 BOLT = '[[bolt]]\nname = "b{k}"\nfaces = ["high.top{k}", "low.bottom{k}"]\npreload = ["{force} kN"]\n'
 

@@ -22,26 +22,14 @@ from faying.measured.uff_write import write_uff
 from faying.numerics.follow import follow
 from faying.result.interval import Interval
 from faying.study.keys.material import PartTestChoice
-from tests.helpers.meshfiles import abaqus
+from tests.helpers.meshfiles import LOW_AND_HIGH, abaqus
 from tests.helpers.plates import STEEL, plates, stacked
 
 LAW_FACTOR = 1.5  # of the joint's stiffness to 5 and 95 %
 MODES, NOISE, WEIGHED = 8, 1e-3, 5e-4  # asked for; sd of ln of a measured frequency, and of a weighed mass
-STUDY = f"""
-[geometry]
-mesh = "model.inp"
-unit = "mm"
-[part.low]
-material = "45 steel"
-[part.high]
-material = "45 steel"
-[surface]
-D = 2.39
-G = "1.53e-10 m"
-scan_area = "16 mm^2"
-[law]
-model = "jk"
-[[joint]]
+STUDY = (
+    LOW_AND_HIGH
+    + f"""[[joint]]
 name = "joint"
 faces = ["low.top", "high.bottom"]
 tangential = 0.6
@@ -57,6 +45,7 @@ levels = []
 stiffness = {{ distribution = "lognormal", median = 1, factor = {LAW_FACTOR} }}
 preload = {{ scatter = "5 %" }}
 """
+)
 ALONE = """
 [geometry]
 step = "bar.step"

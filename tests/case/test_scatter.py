@@ -14,7 +14,7 @@ from faying.case.case import Case
 from faying.case.level_damping import REST
 from faying.case.scatter import SCORE, default, discrepancy, mode_sd, structure_sd, with_assumed
 from faying.study import Study
-from tests.helpers.meshfiles import abaqus
+from tests.helpers.meshfiles import LOW_AND_HIGH, abaqus
 from tests.helpers.plates import stacked
 
 ROOT = Path(__file__).parents[2]
@@ -132,21 +132,9 @@ def test_seats_of_solid_bolts_have_no_waves_that_nobody_gives():
     assert wavy < {joint.name for joint in study.joints}
 
 
-CURVED = """
-[geometry]
-mesh = "model.inp"
-unit = "mm"
-[part.low]
-material = "45 steel"
-[part.high]
-material = "45 steel"
-[surface]
-D = 2.39
-G = "1.53e-10 m"
-scan_area = "16 mm^2"
-[law]
-model = "jk"
-[[joint]]
+CURVED = (
+    LOW_AND_HIGH
+    + """[[joint]]
 name = "joint"
 faces = ["low.top", "high.bottom"]
 [[bolt]]
@@ -156,6 +144,7 @@ preload = "8 kN"
 count = 3
 levels = []
 """
+)
 
 
 @pytest.mark.parametrize("rise", [0.0, 0.02])

@@ -11,6 +11,22 @@ NASTRAN = {"tet": "CTETRA", "hex": "CHEXA", "wedge": "CPENTA"}
 ANSYS = {"tet4": 285, "tet10": 187, "hex8": 185, "hex20": 186, "wedge6": 185, "wedge15": 186}
 
 # a study of the two blocks of `blocks.row`, in an Abaqus file
+# two parts in a mesh, and the law between them; joints and bolts follow
+LOW_AND_HIGH = """
+[geometry]
+mesh = "model.inp"
+unit = "mm"
+[part.low]
+material = "45 steel"
+[part.high]
+material = "45 steel"
+[surface]
+D = 2.39
+G = "1.53e-10 m"
+scan_area = "16 mm^2"
+[law]
+model = "jk"
+"""
 STUDY = """
 [geometry]
 mesh = "model.inp"
