@@ -27,8 +27,8 @@ ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall
 FORCING_TERM = 0.03  # of the imbalance, which a Newton step far from equilibrium leaves
 FIX_FRICTION_BELOW = 1e-4  # imbalance below which k_t and the limit of friction are kept
 MAX_NEWTON_STEPS = 60
-ALIKE = 1e-6  # share of the greatest change of k_t below which one tells nothing new
-DEPTH = 3  # changes of k_t before, from which the next one is foreseen
+MIN_NEW_CHANGE = 1e-6  # share of the greatest change of k_t below which one tells nothing new
+REMEMBERED_CHANGES = 3  # changes of k_t before, from which the next one is foreseen
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -398,11 +398,11 @@ def _followed(
     """
     before, after = (np.concatenate([one.k_t for one in states]) for states in (old, new))
     past.append((before, after))
-    del past[: -DEPTH - 1]
+    del past[: -REMEMBERED_CHANGES - 1]
     change, ahead = after - before, after
     if len(past) > 1:
         others = np.stack([change - (g - x) for x, g in past[:-1]], axis=1)
-        shares = np.linalg.lstsq(others, change, rcond=ALIKE)[0]
+        shares = np.linalg.lstsq(others, change, rcond=MIN_NEW_CHANGE)[0]
         ahead = after - np.stack([after - g for _, g in past[:-1]], axis=1) @ shares
         ahead = np.clip(ahead, after / 2, 2 * after)
     parts = np.split(ahead, np.cumsum([len(one.k_t) for one in new])[:-1])

@@ -13,7 +13,7 @@ from faying.joint.pressure_curve import PressureCurve, fade
 from faying.joint.springs import Motion, Springs
 from faying.typing import Array
 
-FEW = 200  # pressures that take no longer to invert than a table to make
+MAX_INVERTED = 200  # pressures that take no longer to invert than a table to make
 TABLE_PRESSURES = 2000  # steps of 1 % of a pressure over nine decades: k between them is right to 1e-5
 MIN_PRESSURE = 1.0  # Pa: below it a joint carries nothing that matters, and p(approach) goes on as a power
 MIN_SHARE = 0.01  # of a joint's stiffness, worth at most half of that in a frequency: less is not said
@@ -238,13 +238,13 @@ class JointLaw:
     def stiffness(self, pressure: Array, *, tabulated: bool = False) -> tuple[Array, Array]:
         """k_n and k_t [Pa/m] at pressures [Pa] of any shape.
 
-        0 where the pressure is 0, constant beyond the end of the law. The law is asked for up to `FEW` pressures; more,
+        0 where the pressure is 0, constant beyond the end of the law. The law itself is asked for a few pressures; many,
         and those of an iteration (tabulated), are read from its table, which is right to 1e-5.
         """
         within = self.table.within(pressure)
         light = within > pressure
         fade = np.where(light, pressure / np.where(light, within, 1.0), within > 0) ** self.table.fade
-        if tabulated or np.size(pressure) > FEW:
+        if tabulated or np.size(pressure) > MAX_INVERTED:
             found = [np.exp(self.table.between(within, k)) for k in self.table.log_stiffness]
         else:
             found = list(self.table.stiffness_of(self.model.at_pressure(within)))
