@@ -238,8 +238,8 @@ class JointLaw:
     def stiffness(self, pressure: Array, *, tabulated: bool = False) -> tuple[Array, Array]:
         """k_n and k_t [Pa/m] at pressures [Pa] of any shape.
 
-        0 where the pressure is 0, constant beyond the end of the law. The law itself is asked for a few pressures; many,
-        and those of an iteration (tabulated), are read from its table, which is right to 1e-5.
+        0 where the pressure is 0, constant beyond the end of the law. The law is asked for a few pressures; many, and
+        those of an iteration (tabulated), are read from its table, which is right to 1e-5.
         """
         within = self.table.within(pressure)
         light = within > pressure
