@@ -1,6 +1,7 @@
 """What long work shows on stderr."""
 
 import json
+import time
 from pathlib import Path
 
 import pytest
@@ -106,3 +107,18 @@ def test_options_choose_what_stderr_shows():
     assert [event["stage"] for event in events] == [*stages(Study.read(study)), "done"]
     assert events[-1]["done"] == events[-1]["total"]
     assert all(event["left_s"] is not None for event in events[1:-1])
+
+
+def test_a_pipe_gets_a_line_where_work_takes_long(monkeypatch, capsys):
+    with Shown("study") as shown:
+        shown("mesh", 0, 0)
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr("faying.cli.progress.SELDOM", 0.01)
+    with Shown("study") as shown:
+        shown("preload", 1, 4)
+        time.sleep(0.2)
+        shown("modes", 2, 4)
+        time.sleep(0.2)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].endswith("s  preload")
+    assert "s  modes, about" in lines[-1]

@@ -6,6 +6,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from types import TracebackType
 from typing import Any, Literal, Self
 
@@ -13,10 +14,11 @@ import click
 
 from faying.progress import duration
 
-Form = Literal["bar", "lines", "json", "none"]
+Form = Literal["bar", "seldom", "lines", "json", "none"]
 WIDTH = 79
 SEGMENTS = 20  # of the bar
 TICK = 0.5  # s between two drawings of a line in which nothing happens
+SELDOM = 30.0  # s between two lines in a pipe or a file
 # seconds that the stages of a run take beside each other, counted on the T-specimen; only their ratios matter
 SHARES = {"surface": 1.0, "mesh": 5.0, "preload": 4.0, "modes at": 6.0, "frequency": 3.0, "modes free": 9.0}
 OTHERS = 3.0
@@ -27,7 +29,7 @@ def progress_options(command: Callable[..., Any]) -> Callable[..., Any]:
     wanted = click.option(
         "--progress",
         type=click.Choice(["bar", "lines", "json", "none"]),
-        help="Progress on stderr [bar on a terminal, else none].",
+        help="Progress on stderr [bar on a terminal, else a line every 30 s].",
     )
     verbose = click.option("-v", "--verbose", "progress", flag_value="lines", help="A line for each stage.")
     quiet = click.option("-q", "--quiet", "progress", flag_value="none", help="Show no progress.")
@@ -39,13 +41,13 @@ class Shown:
 
     Args:
         label: What works, such as "study".
-        form: How to show it; a bar on a terminal and nothing elsewhere where None.
+        form: How to show it; a bar on a terminal and a line every 30 s elsewhere where None.
         plan: The stages in their order where they are known before; the time left counts those that are to come.
     """
 
     def __init__(self, label: str, form: Form | None = None, plan: Sequence[str] = ()) -> None:
         self.label, self.plan = label, list(plan)
-        self.form: Form = form or ("bar" if sys.stderr.isatty() else "none")
+        self.form: Form = form or ("bar" if sys.stderr.isatty() else "seldom")
         self.stage, self.done, self.total = "", 0, 0
         self.started = self.began = self.counted = time.monotonic()
         self.times: list[tuple[str, float]] = []  # stages that are over, with the seconds that each took
@@ -53,7 +55,7 @@ class Shown:
         self._lock, self._over = threading.Lock(), threading.Event()
 
     def __enter__(self) -> Self:
-        if self.form == "bar":
+        if self.form in ("bar", "seldom"):
             threading.Thread(target=self._ticking, daemon=True).start()
         return self
 
@@ -106,10 +108,12 @@ class Shown:
         return max(expected(self.stage) - spent, 0.0) + sum(map(expected, to_come))
 
     def _ticking(self) -> None:
-        while not self._over.wait(TICK):
-            with self._lock:
-                if self.stage and not self._over.is_set():
+        while not self._over.wait(TICK if self.form == "bar" else SELDOM):
+            with self._lock, suppress(OSError, ValueError):  # whoever reads stderr may be gone
+                if self.stage and not self._over.is_set() and self.form == "bar":
                     self._draw()
+                elif self.stage and not self._over.is_set():
+                    self._say(self.stage, self.done, self.total, self.left())
 
     def _draw(self) -> None:
         filled = SEGMENTS * self.done // self.total if self.total else 0
