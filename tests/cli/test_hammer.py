@@ -219,3 +219,18 @@ def test_the_libraries_are_loaded_only_when_needed():
     modules = "faying.cli.measured.test, faying.cli.scan.law_table"
     code = f"import sys, {modules}; sys.exit(any(m in sys.modules for m in {heavy}))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_frfs_in_the_other_sign_of_time_are_written_as_their_modes_are(tmp_path, capsys):
+    """1/(w0^2 - w^2 - i eta w0^2), of exp(-i w t): the file has modes that decay and FRFs that lag."""
+    f, f0, eta = np.arange(0.0, 201.0), 100.0, 0.02
+    h = 1 / ((2 * np.pi) ** 2 * (f0**2 - f**2 - 1j * eta * f0**2))
+    rows = [f"{a},{v.real!r},{v.imag!r}" for a, v in zip(f.tolist(), h.tolist(), strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["frequency [Hz],re [m/N],im [m/N]", *rows, ""]))
+    assert (
+        run("test", tmp_path / "a.csv", "--quantity", "receptance", "--direction", "z", "--out", tmp_path / "a.uff")
+        == 0
+    )
+    assert "their conjugates are taken" in capsys.readouterr().err
+    written = read_uff(tmp_path / "a.uff").frf()
+    np.testing.assert_allclose(written.values[0, 0], h.conj()[np.isin(f, written.frequency)], rtol=1e-5)

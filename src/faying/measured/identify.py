@@ -25,7 +25,8 @@ class Identified(Summary):
     """Modes of a test and what they rest on.
 
     modes; poles: all of the stabilisation diagram; frf: the FRFs used; fit (n, f): what modes and residuals make of the
-    measured pairs; residues (m, n) of receptance; misfit [-]: rms of what the fit leaves over rms of the FRFs; rule.
+    measured pairs; residues (m, n) of receptance; misfit [-]: rms of what the fit leaves over rms of the FRFs; rule;
+    turned: whether `frf` has the complex conjugates of what was measured.
     """
 
     modes: ModeSet
@@ -35,6 +36,7 @@ class Identified(Summary):
     residues: Complex
     misfit: float
     rule: Rule
+    turned: bool = False
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, the first modes, and what the fit leaves."""
@@ -78,10 +80,10 @@ def identify_modes(
         used = replace(used, warnings=(*used.warnings, UNWEIGHED))
     rule = rule or Rule.fitting(len(used.frequency))
     diagram, found = tracks(used, poles_by_order(used, rule.highest_order), rule)
-    if not found:  # in the other sign of time every pole grows, and none is stable
-        turned = replace(used, values=used.values.conj(), warnings=(*used.warnings, TURNED))
-        diagram, found = tracks(turned, poles_by_order(turned, rule.highest_order), rule)
-        used = turned if found else used
+    turned = not found
+    if turned:  # in the other sign of time every pole grows, and none is stable
+        used = replace(used, values=used.values.conj(), warnings=(*used.warnings, TURNED))
+        diagram, found = tracks(used, poles_by_order(used, rule.highest_order), rule)
     if not found:
         raise InputError(
             f"no pole stays over {rule.orders} of {rule.highest_order} orders between {used.frequency[0]:g} and "
@@ -108,7 +110,9 @@ def identify_modes(
         source=frf.source,
     )
     misfit = float(np.linalg.norm(used.rows() - fit) / np.linalg.norm(used.rows()))
-    return Identified(modes=modes, poles=diagram, frf=used, fit=fit, residues=constants, misfit=misfit, rule=rule)
+    return Identified(
+        modes=modes, poles=diagram, frf=used, fit=fit, residues=constants, misfit=misfit, rule=rule, turned=turned
+    )
 
 
 def _fitted(frf: FRF, found: list[Complex], search: float | None) -> tuple[Complex, Array, Array, tuple[str, ...]]:

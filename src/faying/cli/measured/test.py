@@ -55,7 +55,7 @@ def command(
     **options: Any,
 ) -> None:
     """Identify the modes of a hammer test from the FRFs in FILES: one universal file, or text files of one FRF each."""
-    from faying.measured.identify import TURNED, identify_modes
+    from faying.measured.identify import identify_modes
     from faying.measured.poles import Rule
     from faying.measured.uff_write import write_uff
 
@@ -72,8 +72,7 @@ def command(
 
         save(figure.identified(found), plot)
     if out:
-        turned = TURNED in found.frf.warnings
-        write_uff(out, found.modes, replace(frf, values=frf.values.conj()) if turned else frf)
+        write_uff(out, found.modes, replace(frf, values=frf.values.conj()) if found.turned else frf)
     for line in found.frf.warnings:
         click.echo(f"note: {line}", err=True)
     click.echo(json_text(document(found)) if as_json else table(found))
