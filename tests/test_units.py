@@ -110,4 +110,5 @@ def test_one_length_or_two():
 
 @pytest.mark.parametrize(("unit", "name"), [(unit, name) for unit, names in units.COMMON.items() for name in names])
 def test_common_units_are_those_of_pint(unit, name):
-    assert units.COMMON[unit][name] == pytest.approx(units._pint_factor(name, unit), rel=1e-15, abs=0)
+    name_of_pint = name.replace("g", "g_0") if "s^2" in unit else name  # where an acceleration is meant
+    assert units.COMMON[unit][name] == pytest.approx(units._pint_factor(name_of_pint, unit), rel=1e-15, abs=0)

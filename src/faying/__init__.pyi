@@ -69,6 +69,8 @@ from .result import read_model_modes as read_model_modes
 from .result.backbone import Backbone as Backbone
 from .result.difference import RunDifference as RunDifference
 from .result.difference import compare_runs as compare_runs
+from .result.vibration import VibrationResponse as VibrationResponse
+from .service.vibration import vibration as vibration
 from .setup.check import check as check
 from .setup.faces import faces as faces
 from .setup.new import new_study as new_study
@@ -78,6 +80,7 @@ from .study.load import Displacement as Displacement
 from .study.load import Force as Force
 from .study.load import Load as Load
 from .study.load import Pressure as Pressure
+from .study.vibration import Excitation as Excitation
 from .surface import synthesize as synthesize
 from .surface.combine import Combined as Combined
 from .surface.combine import combine as combine

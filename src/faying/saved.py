@@ -11,14 +11,15 @@ from faying.misuse import checked_call
 from faying.result.backbone import Backbone
 from faying.result.fields import RECORD, RESULT_FILE, read_tree
 from faying.result.result import Result
+from faying.result.vibration import VibrationResponse
 
-Saved = Result | Backbone | Prediction | Identification | LoadCases
+Saved = Result | Backbone | Prediction | Identification | LoadCases | VibrationResponse
 KINDS: tuple[Any, ...] = get_args(Saved)
 
 
 @checked_call
 def load(path: str | Path) -> Saved:
-    """Read a file that Faying has saved: a result, a backbone, a prediction, an identification or load cases.
+    """Read a file that Faying has saved: a result, a backbone, a prediction, an identification, load cases, vibration.
 
     Args:
         path: The file, or the folder of a run.

@@ -26,6 +26,9 @@ EXAMPLES = {
     "m/s^2": "10 m/s^2",
     "K": "60 K",
     "1/K": "12e-6 1/K",
+    "s": "30 min",
+    "(m/s^2)^2/Hz": "0.04 g^2/Hz",
+    "N^2/Hz": "2 N^2/Hz",
 }
 
 _PREFIXES = (
@@ -40,6 +43,7 @@ _PREFIXES = (
 )
 
 
+GRAVITY = 9.80665  # m/s2, standard: "g" where an acceleration is meant
 # what most studies say, so that pint, which takes a second to load, stays out; a test compares each with pint
 COMMON = {
     "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9},
@@ -49,8 +53,11 @@ COMMON = {
     "kg": {"kg": 1.0, "g": 1e-3},
     "kg/m^3": {"kg/m^3": 1.0},
     "Hz": {"Hz": 1.0, "kHz": 1e3},
-    "m/s^2": {"m/s^2": 1.0},
+    "m/s^2": {"m/s^2": 1.0, "g": GRAVITY},
+    "(m/s^2)^2/Hz": {"(m/s^2)^2/Hz": 1.0, "g^2/Hz": GRAVITY**2},
+    "N^2/Hz": {"N^2/Hz": 1.0},
     "N*m": {"N*m": 1.0, "N m": 1.0},
+    "s": {"s": 1.0, "min": 60.0, "h": 3600.0},
     "K": {"K": 1.0},
     "1/K": {"1/K": 1.0},
 }
@@ -58,7 +65,7 @@ COMMON = {
 NUMBER = re.compile(r"\s*+([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*+((?:.*\S)?)\s*+", re.DOTALL)
 # a unit is names with whole powers, joined by * / . or a blank, maybe in brackets; "1/" may stand before one
 _NAME = r"[^\W\d_]++(?:_\w+)?(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"  # ++: letters are not divided in every way
-UNIT = re.compile(rf"(?:\s|[*/·.()]|1(?=\s*/)|{_NAME})*+|%")
+UNIT = re.compile(rf"(?:\s|\)(?:\^|\*\*)[0-9]|[*/·.()]|1(?=\s*/)|{_NAME})*+|%")
 LONGEST = 60  # letters of a unit's name
 
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 import faying
+from faying.case.acting import acting
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.interface import join
 from faying.fe.sides import sides_on
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.structure import Structure
-from faying.loads.acting import acting
 from tests.helpers.bars import even
 from tests.helpers.ccx import deck, run
 

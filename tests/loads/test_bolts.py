@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.loads.acting import acting, nothing
+from faying.case.acting import acting, nothing
 from faying.loads.solve import of_state, solved, statics_of
 from tests.bolt.test_solid_bolt import structure
 from tests.helpers.voxels import bolted

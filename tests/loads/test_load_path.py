@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import faying
+from faying.case.acting import acting, nothing
 from faying.case.case import Progress
 from faying.fe.interface import join
 from faying.fe.sides import sides_on
@@ -14,7 +15,6 @@ from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.load_path import Cut, LoadPaths
 from faying.joint.structure import Structure
-from faying.loads.acting import acting, nothing
 from faying.loads.answers import bolt_changes, cut_loads
 from faying.loads.solve import answers, near_factor, of_state, solved, statics_of
 from tests.helpers.voxels import voxels

@@ -6,8 +6,8 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import faying
+from faying.case.acting import acting, nothing
 from faying.joint.attachments import Support
-from faying.loads.acting import acting, nothing
 from faying.loads.solve import of_state, statics_of
 from tests.helpers.plates import STEEL, plates, stacked
 

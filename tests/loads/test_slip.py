@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import faying
+from faying.case.acting import acting, nothing
 from faying.fe.interface import join
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.structure import Structure
-from faying.loads.acting import acting, nothing
 from faying.loads.solve import of_state, statics_of
 from tests.helpers.bars import even
 from tests.helpers.plates import stacked

@@ -5,8 +5,8 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 import faying
+from faying.case.acting import acting, nothing
 from faying.joint.attachments import Support
-from faying.loads.acting import acting, nothing
 from faying.loads.solve import of_state, statics_of
 from tests.helpers.plates import plates, stacked
 

@@ -10,10 +10,10 @@ from click.testing import CliRunner
 import faying
 from faying.answer.run import run
 from faying.bolt.bolt import FittedBolt
+from faying.case.acting import acting
 from faying.case.case import build
 from faying.cli.main import cli
 from faying.geometry.selectors import Selector
-from faying.loads.acting import acting
 from faying.study import Study
 from tests.helpers.assemblies import bracket, flanges
 from tests.helpers.proposed import proposed

@@ -32,6 +32,8 @@ from faying.numerics.follow import between_by_rank
 from faying.numerics.solve import chosen, is_mpi
 from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
+from faying.result.vibration import VibrationResponse
+from faying.service.vibration import vibrations_of
 from faying.study.keys.varied import number_of
 from faying.study.study import Study
 from faying.text import listed
@@ -79,6 +81,10 @@ def run(
     case = Case.of(study, progress)
     solver = engine_of(engine, case)
     states = [solve(case, number, solver, progress) for number in range(len(study.loads))]
+    vibrations: list[VibrationResponse] = []
+    for state, load in zip(states, study.preloads, strict=True) if study.vibrations else ():
+        progress.begin(f"vibration at {load.name}")
+        vibrations += vibrations_of(case, state)
     del solver  # its basis and, below, the factorisation of the states: memory is short
     progress.begin("intervals and bolts")
     mesh = mesh_error(case, states) if study.modes.intervals else None
@@ -92,7 +98,10 @@ def run(
         progress.begin("modes free and bonded")
     ends, notes = bounds(case)
     notes = [*notes, *findings(case, states), *more, *bolt_notes]
-    result = replace(collect(case, states, shapes, ends, notes, alternatives), bolt_numbers=bolts)
+    notes += [note for one in vibrations for note in one.notes]
+    result = replace(
+        collect(case, states, shapes, ends, notes, alternatives), bolt_numbers=bolts, vibrations=tuple(vibrations)
+    )
     if band is not None:
         result = replace(result, **band.fields(case.loads))
     if interval is not None:
@@ -129,6 +138,7 @@ def stages(study: Study) -> list[str]:
         out += [f"frequency response at {load}"] if study.response is not None else []
         if study.hammer is not None and number == study.hammer.load:
             out.append("frequency response at the points of the test")
+    out += [f"vibration at {load}" for load in loads] if study.vibrations else []
     out.append("intervals and bolts")
     out += [stage for _ in study.alternatives for load in loads for stage in (f"preload {load}", f"modes at {load}")]
     out += ["modes free and bonded"] * bool(study.joints)

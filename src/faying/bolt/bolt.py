@@ -628,6 +628,15 @@ class FittedBolt(BoltPlace):
         beam = self._beam()
         return None if beam is None else np.asarray(beam @ (self.motion @ displacement))
 
+    @property
+    def guided_compliance(self) -> float:
+        """Motion of the head across the bolt over the force that it takes [m/N]; NaN without a shank.
+
+        Head and nut keep their direction, as faces of parts do that slide on each other: a guided cantilever.
+        """
+        beam = self._beam()
+        return float("nan") if beam is None else 1 / float(beam[1, 1])
+
     def _beam(self) -> Array | None:
         """Stiffness (12, 12) of a round beam with shear along the first axis (Przemieniecki 1968, section 5.6)."""
         bolt = self.bolt

@@ -315,6 +315,11 @@ def named_faces(study: Study) -> list[tuple[str, str, str, str]]:
         named += [(f"support[{k}].{key}", "support", face, face) for key, face in held if face is not None]
     masses = [(k, one.face) for k, one in enumerate(study.masses, 1) if one.face is not None]
     named += [(f"mass[{k}].face", "mass", face, face) for k, face in masses]
+    named += [
+        (f"vibration[{k}].face", "vibration", one.name, one.force.face)
+        for k, one in enumerate(study.vibrations, 1)
+        if one.force is not None and one.force.face is not None
+    ]
     for k, load in enumerate(study.load_cases, 1):
         acting: dict[str, Sequence[Force | Pressure | Displacement]] = {
             "force": load.forces,
@@ -407,7 +412,8 @@ def build(study: Study) -> Structure:
     return structure_of(study, checked_mesh(study), surfaces, laws)
 
 
-def bare(study: Study) -> Study:
-    """The study with its preloads and modes alone."""
+def bare(study: Study, *, vibrations: bool = False) -> Study:
+    """The study with its preloads and modes alone; vibrations: and with what shakes it."""
     modes = replace(study.modes, levels=(), intervals=False)
-    return replace(study, response=None, hammer=None, backbone=None, alternatives=(), modes=modes)
+    shaken = study.vibrations if vibrations else ()
+    return replace(study, response=None, hammer=None, backbone=None, alternatives=(), modes=modes, vibrations=shaken)

@@ -72,7 +72,7 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> LevelD
         middle_laws = laws(FRICTION[1], SPRINGS)
     except InputError:
         return None
-    basis = level_basis(structure, preload, found, coarse[: 2 if assumed else 1], choice.levels, choice.count)
+    basis = level_basis(structure, preload, found, coarse[: 2 if assumed else 1], [choice.levels] * choice.count)
 
     def at(laws: Sequence[Microslip]) -> AtLevels:
         return level_model(structure, preload, basis, laws).at(choice.levels, choice.count)

@@ -27,6 +27,11 @@ def named_points(study: Study) -> Iterator[tuple[str, str, Point]]:
         for n, force in enumerate(load.forces, 1):
             if force.face is None and force.point is not None:
                 yield f"load[{k}].force[{n}].point", f"load {load.name!r}: force", force.point
+    for k, one in enumerate(study.vibrations, 1):
+        for point in one.points:
+            yield f"vibration[{k}].points", f"vibration {one.name!r}: point", point
+        if one.force is not None and one.force.face is None and one.force.point is not None:
+            yield f"vibration[{k}].point", f"vibration {one.name!r}: force", one.force.point
     if study.response is not None:
         for place, _ in (*study.response.inputs, *study.response.outputs):
             yield "response", "point of the response", place

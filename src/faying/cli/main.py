@@ -38,6 +38,7 @@ COMMANDS = {
     "sweep": ("sweep", "Many laws, surfaces and preloads on one structure, solved once."),
     "surface": ("scan.surface", "Roughness, fractal dimension D and roughness G of a scan."),
     "test": ("measured.test", "Identify the modes of a hammer test from its FRFs."),
+    "vibration": ("vibration", "Random vibration and sine sweeps: levels, damping, bolts, margins of slip."),
     "view": ("view", "Show a study, a result, a mesh or a STEP file in the browser."),
 }
 

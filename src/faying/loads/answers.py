@@ -8,6 +8,7 @@ import numpy as np
 
 from faying.bolt.bolt import Bolt, FittedBolt
 from faying.joint.bolted import BoltedStructure
+from faying.joint.carried import PressedPatch
 from faying.joint.load_path import LoadPaths
 from faying.joint.strength import least_seat_area
 from faying.loads.contact import LoadedContact
@@ -67,14 +68,9 @@ def _joint(contact: LoadedContact, interface: Any, bolt: Index, motion: Array, t
 
 @dataclass(frozen=True, kw_only=True)
 class _Carried:
-    """What some points of a joint carry: normal force and shear force [N], torque about the normal [N m].
+    """What points of a joint carry: normal and shear force [N], torque about the normal [N m], and both as one [N].
 
-    equivalent: shear force [N] that needs as much friction as shear force and torque together. Friction alone bears a
-    torque of mu times the integral of p r about the centre of the pressure; shear and torque lie on an ellipse.
-
-    Source:
-        S. Goyal, A. Ruina, J. Papadopoulos, Planar sliding with dry friction, Wear 143 (1991), 307 to 330: the limit
-        surface; R. D. Howe, M. R. Cutkosky, Int. J. Robotics Research 15 (1996), 557 to 572: as an ellipsoid.
+    equivalent: shear force that needs as much friction as shear force and torque together.
     """
 
     normal: float
@@ -85,24 +81,10 @@ class _Carried:
     @classmethod
     def of(cls, interface: Any, traction: Array, weights: Array, some: Mask) -> "_Carried":
         """Return it of some points (q,) of an interface under tractions (q, 3) [Pa]."""
-        frames, places, weights = interface.frames[some], interface.positions[some], weights[some]
-        press = weights * np.maximum(-traction[some, 0], 0.0)
-        tau = np.einsum("q,qi,qij->qj", weights, traction[some, 1:], frames[:, 1:])
-        normal, resultant = float(press.sum()), tau.sum(axis=0)
-        if not normal > 0:
-            return cls(normal=normal, shear=float(np.linalg.norm(resultant)), torque=0.0, equivalent=0.0)
-        axis = np.einsum("q,qj->j", press, frames[:, 0])
-        axis = axis / np.linalg.norm(axis)
-        arm = places - press @ places / normal
-        torque = float(np.cross(arm, tau).sum(axis=0) @ axis)
-        reach = float(press @ np.linalg.norm(arm - np.outer(arm @ axis, axis), axis=1)) / normal
-        shear = float(np.linalg.norm(resultant))
-        return cls(
-            normal=normal,
-            shear=shear,
-            torque=abs(torque),
-            equivalent=float(np.hypot(shear, torque / reach)) if reach > 0 else shear,
-        )
+        patch = PressedPatch.of(interface, -traction[:, 0], weights, some)
+        forces, torques = patch.loads(traction[:, 1:, None])
+        shear, torque = float(np.linalg.norm(forces)), abs(float(torques[0]))
+        return cls(normal=patch.normal, shear=shear, torque=torque, equivalent=patch.equivalent(shear, torque))
 
 
 def bolt_answers(

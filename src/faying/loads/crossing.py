@@ -5,14 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.bolt.bolt import FittedBolt, frame_about
 from faying.bolt.solid_bolt import FittedSolidBolt
 from faying.fe.nodal_forces import thermal_forces
 from faying.joint.bolted import BoltedStructure
 from faying.joint.load_path import BoltLine, LoadPaths, distance_from
+from faying.joint.shank_forces import shank_forces
 from faying.loads.contact import LoadedContact
 from faying.loads.statics import LoadedState
-from faying.numerics.product import product
 from faying.typing import Array
 
 NAN = float("nan")
@@ -36,35 +35,12 @@ class Bent:
 def bent(structure: BoltedStructure, index: int, state: LoadedState, motion: Array) -> Bent:
     """How a bolt is bent by a displacement [m] (unknowns,) from the preload."""
     fitted = structure.fitted_bolts[index]
-    if isinstance(fitted, FittedBolt):
-        ends = fitted.end_forces(motion)
-        if ends is None:
-            return Bent(moment=NAN, shear=np.full(3, NAN), torsion=NAN)
-        moment = float(max(np.linalg.norm(ends[4:6]), np.linalg.norm(ends[10:12])))
-        # the ends bear on the shank, so that the shank bears on the part the other way
-        return Bent(moment=moment, shear=-ends[1:3] @ frame_about(fitted.axis)[1:], torsion=-float(ends[3]))
-    moves = _section_moves(structure, fitted)
-    layer = np.repeat(np.any(fitted.pull.reshape(-1, 3) != 0, axis=1), 3)
-    # in the plane across the shank: nodes that the bolt shares with another part bear forces of that part, too
-    resisted = np.where(layer[:, None], product(structure.matrices[0], moves), 0.0)
-    work = resisted.T @ motion - moves.T @ own_heat(structure, fitted, state)
-    return Bent(moment=float(np.linalg.norm(work[2:4])), shear=work[:2] @ _across(fitted), torsion=float(work[4]))
-
-
-def _across(fitted: FittedSolidBolt) -> Array:
-    """Two unit vectors (2, 3) across a meshed bolt."""
-    axis = fitted.seats[1] - fitted.seats[0]
-    return frame_about(axis / np.linalg.norm(axis))[1:]
-
-
-def _section_moves(structure: BoltedStructure, fitted: FittedSolidBolt) -> Array:
-    """Motions (unknowns, 5) of the far half of a meshed bolt: along two axes across it, about them, about its own."""
-    first, second = across = _across(fitted)
-    far = np.any(fitted.drawn.reshape(-1, 3) != 0, axis=1)[:, None]
-    arm = structure.mesh.points - fitted.bolt.place(structure.mesh)
-    moves = [np.where(far, one, 0.0) for one in across]
-    moves += [np.where(far, np.cross(one, arm), 0.0) for one in (first, second, np.cross(first, second))]
-    return np.stack([one.ravel() for one in moves], axis=1)
+    heat = own_heat(structure, fitted, state) if isinstance(fitted, FittedSolidBolt) else None
+    found = shank_forces(structure, index, motion, heat)
+    if found is None:
+        return Bent(moment=NAN, shear=np.full(3, NAN), torsion=NAN)
+    moment = float(np.linalg.norm(found.moments, axis=1).max())
+    return Bent(moment=moment, shear=found.shear @ found.across, torsion=float(found.torsion))
 
 
 def own_heat(structure: BoltedStructure, fitted: FittedSolidBolt, state: LoadedState) -> Array:

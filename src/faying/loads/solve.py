@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from faying.case.acting import Acting, acting, nothing
 from faying.case.case import Case, Progress, bare
 from faying.case.engine import Engine, engine_of
 from faying.case.provenance import provenance
@@ -19,7 +20,6 @@ from faying.joint.shared_modes import SharedModes
 from faying.joint.springs import Springs
 from faying.joint.state import State
 from faying.joint.support_check import check_motions, checked_preload
-from faying.loads.acting import Acting, acting, nothing
 from faying.loads.answers import NOTHING, bolt_answers, joint_answers
 from faying.loads.contact import LoadedContact
 from faying.loads.record import LoadCases

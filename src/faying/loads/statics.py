@@ -18,9 +18,9 @@ from typing import Any
 
 import numpy as np
 
+from faying.case.acting import Acting
 from faying.errors import NotConverged
 from faying.joint.equilibrium import admissible
-from faying.loads.acting import Acting
 from faying.loads.contact import ContactState, LoadedContact
 from faying.memory import require
 from faying.numerics.product import combined

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
-from faying.joint.structure import Structure
 from faying.microslip.levels import LevelCycle, LevelModel, level_model
 from faying.microslip.microslip import Microslip
 from faying.microslip.slip_basis import GOOD, unbalanced_forces
@@ -29,12 +29,11 @@ MIN_NEW_SHARE = 1e-6  # of the square of a motion that must be new: what is less
 
 
 def level_basis(
-    structure: Structure,
+    structure: BoltedStructure,
     preload: PreloadState,
     found: Vibration,
     laws: Sequence[Sequence[Microslip]],
-    levels: Sequence[float],
-    count: int,
+    levels: Sequence[Sequence[float]],
 ) -> Span:
     """Make the basis of the lowest elastic modes.
 
@@ -44,23 +43,23 @@ def level_basis(
         found: its modes at rest, at least `count` elastic ones to full accuracy.
         laws: of the joints, one set after another that the basis is made for, the least friction first. It slips most:
             the next set is for modes that have no answer at the greatest level under it.
-        levels: accelerations [m/s2], of which each mode takes the greatest at which it has an answer.
-        count: how many elastic modes.
+        levels: accelerations [m/s2] of each elastic mode from the lowest on, of which it takes the greatest at which it
+            has an answer; none for a mode that is not looked at.
 
     Returns:
         Vectors orthonormal with the mass, rigid motions first, and the stiffness of the parts projected on them.
     """
     stiffness, mass = structure.dynamic_matrices
-    basis = Span(mass, stiffness, found.modes.shapes[:, : structure.rigid_count + count])
+    basis = Span(mass, stiffness, found.modes.shapes[:, : structure.rigid_count + len(levels)])
     at_rest = Shifted(stiffness=found.stiffness, mass=mass, shift=found.modes.shift)
-    left = list(range(count))
+    left = [k for k, own in enumerate(levels) if len(own)]
     for own in laws:
         wanted = left
         for number in range(ROUNDS):
             model = level_model(structure, preload, basis, own)
-            every = {k: _greatest(model, levels, k) for k in wanted}
+            every = {k: _greatest(model, levels[k], k) for k in wanted}
             if number == 0:
-                left = [k for k, one in every.items() if one is None or one[0] < max(levels)]
+                left = [k for k, one in every.items() if one is None or one[0] < max(levels[k])]
             # the basis has the modes at rest
             cycles = {k: one[1] for k, one in every.items() if one is not None and not one[1].at_rest}
             if not cycles:
@@ -83,7 +82,7 @@ def _greatest(model: LevelModel, levels: Sequence[float], number: int) -> tuple[
     return next((one for one in cycles if np.isfinite(one[1].frequency)), None)
 
 
-def _left(structure: Structure, model: LevelModel, cycle: LevelCycle) -> Array:
+def _left(structure: BoltedStructure, model: LevelModel, cycle: LevelCycle) -> Array:
     """What a cycle leaves in the full equations, (unknowns, ROWS), over the root of twice the energy of its motion."""
     motion = cycle.motion[:ROWS]
     left = unbalanced_forces(

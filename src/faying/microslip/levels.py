@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
-from faying.joint.structure import Structure
 from faying.microslip.microslip import Microslip
 from faying.microslip.slip_model import SlipModel, slip_joints
 from faying.numerics.span import Span
@@ -270,7 +270,9 @@ def _aitken(share: float, before: Array, now: Array) -> float:
     return float(np.clip(-share * float(before @ change) / square, *SHARES)) if square > 0 else share
 
 
-def cut_laws(structure: Structure, preload: PreloadState, friction: Sequence[float], springs: int) -> list[Microslip]:
+def cut_laws(
+    structure: BoltedStructure, preload: PreloadState, friction: Sequence[float], springs: int
+) -> list[Microslip]:
     """The law of each joint under a preload, cut into so many springs with sliders; friction: coefficient of each.
 
     Raises InputError as `Microslip.cut`.
@@ -281,7 +283,9 @@ def cut_laws(structure: Structure, preload: PreloadState, friction: Sequence[flo
     ]
 
 
-def level_model(structure: Structure, preload: PreloadState, basis: Span, laws: Sequence[Microslip]) -> LevelModel:
+def level_model(
+    structure: BoltedStructure, preload: PreloadState, basis: Span, laws: Sequence[Microslip]
+) -> LevelModel:
     """A structure under its preload in a basis, ready to be marched.
 
     Args:

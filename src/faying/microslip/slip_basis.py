@@ -13,9 +13,9 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.interface import Interface
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.springs import Springs
-from faying.joint.structure import Structure
 from faying.microslip.epmc import ALL_SLIDING, OTHER_MODES, Epmc, EpmcPoint
 from faying.microslip.microslip import Microslip
 from faying.microslip.slip_model import SlipJoint, SlipModel, slip_joints
@@ -50,7 +50,7 @@ class SlipBasis:
         InputError: There is no such mode, or a joint has springs per node.
     """
 
-    structure: Structure
+    structure: BoltedStructure
     preload: PreloadState
     springs: Sequence[Springs[Interface]]
     modes: Modes
@@ -116,7 +116,9 @@ class SlipBasis:
         """Take vectors (unknowns, m) that were the basis of the same structure before, as they are."""
         self.basis.append(vectors)
 
-    def under(self, structure: Structure, preload: PreloadState, springs: Sequence[Springs[Interface]]) -> "SlipBasis":
+    def under(
+        self, structure: BoltedStructure, preload: PreloadState, springs: Sequence[Springs[Interface]]
+    ) -> "SlipBasis":
         """The structure under another preload or other laws on its joints, in the same basis."""
         other = replace(self, structure=structure, preload=preload, springs=springs)
         other.basis = self.basis
@@ -240,7 +242,7 @@ class SlipBasis:
 
 
 def unbalanced_forces(
-    structure: Structure,
+    structure: BoltedStructure,
     vectors: Array,
     joints: Sequence[SlipJoint],
     *,

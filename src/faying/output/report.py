@@ -16,7 +16,7 @@ from faying.output.figures import narrowing
 from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
 from faying.output.sections import ReportSection, sections
-from faying.result import Result, backbone, interval_figure, level_figure
+from faying.result import Result, backbone, interval_figure, level_figure, vibration
 from faying.result import figure as structure
 from faying.result import response_figure as response
 from faying.result.fields import RESULT_FILE, declared
@@ -312,6 +312,22 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
         "backbone measured",
         "backbone bounds",
         "modal forces",
+    ),
+    "Vibration": (
+        "vibration",
+        ReportFigure(
+            name="vibration",
+            draw=lambda result: result.vibrations[-1].plot()[0].figure,
+            caption="Left: acceleration of the points along the input, 5 to 95 %, and the input, dashed. Right: "
+            "damping ratio of the modes that are shaken most over their level; dots: the level that they reach.",
+            applies=lambda result: bool(result.vibrations),
+        ),
+        ReportFigure(
+            name="life",
+            draw=lambda result: vibration.life_figure(result.vibrations),
+            caption="Life of the bolt that fails first against preload, 5 to 95 %.",
+            applies=lambda result: vibration.has_life(result.vibrations),
+        ),
     ),
     "Intervals": (
         "shares",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from faying.output import answer, table
 from faying.output.table import Rows
 from faying.result import Result
+from faying.service.table import HELP, TABLES, heading
 from faying.units import in_mm, load_text
 
 
@@ -39,7 +40,14 @@ class ReportSection:
 
 def sections(result: Result) -> list[ReportSection]:
     """Return the tables that a result has."""
-    every = (*_answer(result), *_modes(result), *_joints(result), *_backbones(result), *_tests(result))
+    every = (
+        *_answer(result),
+        *_modes(result),
+        *_joints(result),
+        *_backbones(result),
+        *_vibrations(result),
+        *_tests(result),
+    )
     there = {section.chapter for section in every}
     others = dict.fromkeys(meta.shown.chapter for meta in result.shown().values() if meta.shown.chapter not in there)
     more = [section for chapter in others for section in _shown(result, chapter)]
@@ -215,6 +223,18 @@ def _backbones(result: Result) -> Iterator[ReportSection]:
             title=f"Error bounds of {what}",
             line=f"error bounds of {what}",
         )
+
+
+def _vibrations(result: Result) -> Iterator[ReportSection]:
+    """What the structure does in service: modes, points, bolts and joints under each excitation."""
+    for one in result.vibrations:
+        for title, rows in TABLES.items():
+            yield ReportSection(
+                name="vibration",
+                rows=rows(one),
+                title=f"{heading(one)[:1].upper()}{heading(one)[1:]}: {title}",
+                below=HELP if one is result.vibrations[-1] and title == list(TABLES)[-1] else "",
+            )
 
 
 def _tests(result: Result) -> tuple[ReportSection, ...]:

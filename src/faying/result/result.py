@@ -24,7 +24,8 @@ class Result(RunRecord):
     every joint bonded, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
     was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the laws
     state, None where none states one; `alternatives` names other laws, their frequencies are `alternative_frequencies`.
-    `backbones` are the curves over amplitude that the study asks for, at the greatest preload.
+    `backbones` are the curves over amplitude that the study asks for, at the greatest preload; `vibrations` what it
+    does in service, one after another at each preload.
     `tightening` names the bolts in the order in which they were pulled, and is empty where all were pulled at once.
     `parts`, `faces`, `joint_faces` (the two faces of each joint), `supports` and `masses` say what the structure is
     made of; they and the fields that go with them are empty or None in files of earlier versions.

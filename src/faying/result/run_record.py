@@ -19,6 +19,7 @@ from faying.result.bolts import BoltNumbers
 from faying.result.fields import Recorded, RecordedQuantity, ShownAs, declared, in_units, load_texts, optional, variable
 from faying.result.interval import Interval
 from faying.result.provenance import Provenance
+from faying.result.vibration import VibrationResponse
 from faying.text import csv_text, listed, notes_row
 from faying.typing import Array, Complex, Index
 
@@ -317,6 +318,7 @@ class RunRecord(Recorded):
     hammer: ModalComparison | None = None
     bolt_numbers: BoltNumbers | None = None
     backbones: tuple[Backbone, ...] = ()
+    vibrations: tuple[VibrationResponse, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)
 
     def summary(self) -> tuple[str, dict[str, str]]:
@@ -441,6 +443,8 @@ class RunRecord(Recorded):
             out["hammer_test"] = self.hammer.to_dict()
         if self.backbones:
             out["backbones"] = [curve.to_dict() for curve in self.backbones]
+        if self.vibrations:
+            out["vibrations"] = [one.to_dict() for one in self.vibrations]
         out["sources"] = list(self.sources)
         out["notes"] = [asdict(note) for note in self.notes]
         return out

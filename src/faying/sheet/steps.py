@@ -5,6 +5,7 @@ from dataclasses import replace
 from inspect import signature
 from math import pi, sqrt, tan
 
+from faying.bolt.fatigue import endurance
 from faying.bolt.vdi2230 import reduced_stress, thread_torque
 from faying.sheet.rows import Step
 
@@ -16,11 +17,6 @@ SHEAR = 0.6  # shear strength of a bolt over its tensile strength, at least (VDI
 def working_stress(F: float, d_0: float, torque: float) -> float:
     """Von Mises stress [Pa] in service: half of the greatest elastic shear stress of tightening is left."""
     return sqrt((F / (pi / 4 * d_0**2)) ** 2 + 3 * (0.5 * torque / (pi / 16 * d_0**3)) ** 2)
-
-
-def endurance(d: float) -> float:
-    """Stress amplitude [Pa] that a thread rolled before heat treatment bears 2e6 times and more; d [m]."""
-    return 0.85 * (150 / (1e3 * d) + 45) * 1e6
 
 
 def engagement(*, R_m: float, A_S: float, tau_B: float, d: float, d_2: float, P: float) -> float:

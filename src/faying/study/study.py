@@ -32,8 +32,10 @@ from faying.study.keys.surface import SurfaceChoice
 from faying.study.keys.tables import STUDY
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
 from faying.study.keys.uncertain import Known, UncertainChoice, extracted, read_uncertain
+from faying.study.keys.vibration import read_vibrations
 from faying.study.load import Load
 from faying.study.results_folder import PLAIN, results_folder
+from faying.study.vibration import Excitation
 from faying.style import Summary
 from faying.text import toml
 
@@ -56,6 +58,7 @@ class Study(Summary):
         alternatives: other laws and surfaces whose modes stand beside those of the study.
         bolt_sheets: what is said for the sheets of the bolts.
         load_cases: what acts on the preloaded structure.
+        vibrations: what shakes it in service.
         part_tests: what was measured of parts alone.
         uncertain: which numbers scatter; None where the file does not say.
         order: the order of tightening as indices of bolts, pass after pass; None where all are pulled at once.
@@ -85,6 +88,7 @@ class Study(Summary):
     name: str = PLAIN
     bolt_sheets: tuple[BoltSheetChoice, ...] = ()
     load_cases: tuple[Load, ...] = ()
+    vibrations: tuple[Excitation, ...] = ()
     part_tests: Mapping[str, PartTestChoice] = field(default_factory=dict)
     text: str = field(default="", repr=False)
     data: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
@@ -117,6 +121,7 @@ class Study(Summary):
             "backbone": self.backbone,
             "alternatives": self.alternatives,
             "load cases": self.load_cases,
+            "vibration": self.vibrations,
             "bolt sheets": self.bolt_sheets,
             "scatter": self.uncertain,
             "tests of parts": self.part_tests,
@@ -210,7 +215,7 @@ class Study(Summary):
         backbone = top.inner("backbone", BackboneChoice.of)
         _note_lacking_laws(faults, joints, (law, surface), alternatives, backbone)
         bolts, forces = _bolts(top, materials, joints)
-        cases = read_loads(top.tables("load"))
+        cases, vibrations = read_loads(top.tables("load")), read_vibrations(top.tables("vibration"))
         names = [bolt.name for bolt in bolts]
         sheets = read_bolt_sheets(top.tables("bolt_sheet"), names, [load.name for load in cases])
         supports, masses = top.every("support", read_support), top.every("mass", read_mass)
@@ -248,6 +253,7 @@ class Study(Summary):
             uncertain=uncertain,
             bolt_sheets=sheets,
             load_cases=cases,
+            vibrations=vibrations,
             dowels=dowels,
             supports=supports,
             masses=masses,

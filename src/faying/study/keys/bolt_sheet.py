@@ -34,6 +34,7 @@ class BoltSheetChoice:
         thermal_loss: Preload [N] that temperature takes.
         shear_strength: Of the tapped part [Pa].
         rolled: When the thread is rolled, "before" or "after" heat treatment.
+        fatigue: Curve of its fatigue: "vdi", VDI 2230, or "iec", IEC 61400-6.
     """
 
     bolt: str | None = None
@@ -51,6 +52,7 @@ class BoltSheetChoice:
     thermal_loss: float | None = None
     shear_strength: float | None = None
     rolled: Literal["before", "after"] = "before"
+    fatigue: Literal["vdi", "iec"] = "vdi"
 
     @classmethod
     def of(cls, table: Table, bolts: Sequence[str], cases: Sequence[str]) -> "BoltSheetChoice":
@@ -180,4 +182,5 @@ BOLT_SHEET: Declared = {
         "before",
         ("before", "after"),
     ),
+    "fatigue": Key.text("Curve of fatigue in vibration: VDI 2230, or IEC 61400-6.", "vdi", ("vdi", "iec")),
 }

@@ -15,6 +15,7 @@ from faying.study.keys.solution import MODES, RESPONSE, TIGHTENING
 from faying.study.keys.support import MASS, SUPPORT
 from faying.study.keys.surface import SURFACE
 from faying.study.keys.test import TEST
+from faying.study.keys.vibration import VIBRATION
 
 STUDY: Declared = {
     "title": Key.text("What tables and report call the study.", "untitled"),
@@ -48,6 +49,9 @@ STUDY: Declared = {
         says="A load case on the preloaded structure, for `faying loads`. All that it gives acts together.",
         keys=LOAD,
         many=True,
+    ),
+    "vibration": Inner(
+        says="What shakes the structure in service: random vibration, or a sine sweep.", keys=VIBRATION, many=True
     ),
     "support": Inner(says="A face that is held, at rest or on springs.", keys=SUPPORT, many=True),
     "mass": Inner(says="A mass that is fixed to a face or at a point.", keys=MASS, many=True),

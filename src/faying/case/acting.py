@@ -89,7 +89,7 @@ def _own(structure: BoltedStructure, load: Load) -> Acting:
     mesh, what = structure.mesh, f"load {load.name!r}"
     force = np.zeros(mesh.unknowns)
     for one in load.forces:
-        force += _force(structure, one, what)
+        force += nodal_force(structure, one, what)
     for pressure in load.pressures:
         known_face(mesh, pressure.face, what)
         force += pressure.pressure * pressure_forces(mesh, pressure.face)
@@ -116,7 +116,8 @@ def _with_all_moved(structure: BoltedStructure, moved: Array) -> Array:
     return np.asarray(along)
 
 
-def _force(structure: BoltedStructure, one: Force, what: str) -> Array:
+def nodal_force(structure: BoltedStructure, one: Force, what: str) -> Array:
+    """Nodal forces [N] (unknowns,) of a force and a moment on a face, or of a force at a point."""
     mesh = structure.mesh
     if one.face is None:
         assert one.point is not None

@@ -1,0 +1,159 @@
+"""Level curves of the modes of a structure, marched up to the amplitude that an excitation makes of each."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from faying.case.level_damping import FRICTION, REST, SPRINGS_AT_ENDS
+from faying.errors import InputError
+from faying.joint.bolted import BoltedStructure
+from faying.joint.equilibrium import PreloadState
+from faying.joint.modal import Vibration
+from faying.microslip.level_basis import level_basis
+from faying.microslip.levels import SPRINGS, LevelModel, cut_laws, level_model
+from faying.microslip.microslip import Microslip
+from faying.service.mode_curve import ModeCurve
+from faying.typing import Array
+
+LOWEST = 0.02  # of the amplitude that a mode would have with the least damping at rest: where its curve begins
+STEP = 2.0  # from level to level: between them a curve of two plateaus is smooth to 1 %
+STEP_AT_ENDS = 4.0  # the same at the ends of friction, where 3 % do
+SLIGHT = 0.1  # of the damping at rest: a curve that begins with more slip goes down first, in steps of
+DOWN = 8.0
+MOST_DOWN = 6  # at most so many of them
+BASIS = (1.0, 0.25, 0.0625)  # of the level with the greatest damping at rest, at one of which the basis is made
+NOTHING = 1e-3  # of the level of the mode that is shaken most: modes below it are taken as at rest
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurveSets:
+    """The curves of all elastic modes at the median of friction, and at its ends where it is not given.
+
+    Args:
+        best: Of each mode (m).
+        least, most: At the least and the greatest friction; None where each joint has its own.
+        rest: Damping ratio at rest [-], 5 %, median and 95 % (3, m).
+        ended: Modes, from 1, whose joints would slide without end below the amplitude that is looked for.
+    """
+
+    best: tuple[ModeCurve, ...]
+    least: tuple[ModeCurve, ...] | None
+    most: tuple[ModeCurve, ...] | None
+    rest: Array
+    ended: tuple[int, ...] = ()
+
+    def at_rest(self, end: int) -> tuple[ModeCurve, ...]:
+        """The best curves with the damping at rest of an end: 0, 1 or 2."""
+        return tuple(replace(c, rest=float(z)) for c, z in zip(self.best, self.rest[end], strict=True))
+
+
+def rest_damping(structure: BoltedStructure, found: Vibration) -> Array:
+    """Damping ratio at rest [-] (3, m): what the laws predict, or else the prior of bolted structures."""
+    if structure.predicts_loss:
+        return np.tile(found.damped.loss_factors / 2, (3, 1))
+    return np.tile(np.array(REST)[:, None], (1, len(found.damped.frequencies)))
+
+
+def curve_sets(
+    structure: BoltedStructure,
+    preload: PreloadState,
+    found: Vibration,
+    needs: Sequence[Callable[[ModeCurve], float]],
+    greatest: Array,
+) -> CurveSets:
+    """March the modes of a structure.
+
+    Args:
+        structure: The structure.
+        preload: Its equilibrium under the bolts.
+        found: Its modes at rest.
+        needs: Of each elastic mode (m), the amplitude of its coordinate up to which its curve is wanted.
+        greatest: Displacement of the node that moves most in each mode [kg^-1/2] (m,).
+    """
+    rest = rest_damping(structure, found)
+    speeds = 2 * np.pi * found.damped.frequencies
+    plain = tuple(ModeCurve(speed=float(w), rest=float(z)) for w, z in zip(speeds, rest[1], strict=True))
+    laws = {} if any(joint.per_node for joint in structure.joints) else _laws(structure, preload, SPRINGS_AT_ENDS)
+    if not laws:
+        return CurveSets(best=plain, least=None, most=None, rest=rest)
+    lossless = [replace(c, rest=float(z)) for c, z in zip(plain, rest[0], strict=True)]
+    expected = np.array([need(c) for need, c in zip(needs, lossless, strict=True)])
+    damped = [replace(c, rest=float(z)) for c, z in zip(plain, rest[2], strict=True)]
+    likely = np.array([need(c) for need, c in zip(needs, damped, strict=True)])
+    scale = greatest * speeds**2
+    wanted = expected * scale > NOTHING * (expected * scale).max(initial=0.0)
+    levels = [
+        (likely[k] * scale[k] * np.array(BASIS)).tolist() if wanted[k] and likely[k] > 0 else []
+        for k in range(len(scale))
+    ]
+    basis = level_basis(structure, preload, found, list(laws.values())[:2], levels)
+    laws[FRICTION[1]] = _laws(structure, preload, SPRINGS, FRICTION[1:2])[FRICTION[1]]
+    moved = found.damped.frequencies / found.modes.frequencies[structure.rigid_count :][: len(speeds)]
+    sets, ended = {}, set()
+    for mu, own in laws.items():
+        model = level_model(structure, preload, basis, own)
+        marched = [
+            _march(model, k, curve, need, scale[k], moved[k], STEP if mu == FRICTION[1] else STEP_AT_ENDS)
+            if wanted[k]
+            else (curve, False)
+            for k, (curve, need) in enumerate(zip(lossless, needs, strict=True))
+        ]
+        sets[mu] = tuple(replace(c, rest=float(z)) for (c, _), z in zip(marched, rest[1], strict=True))
+        ended |= {k + 1 for k, (_, stopped) in enumerate(marched) if stopped and mu == FRICTION[1]}
+    return CurveSets(
+        best=sets[FRICTION[1]],
+        least=sets.get(FRICTION[0]),
+        most=sets.get(FRICTION[2]),
+        rest=rest,
+        ended=tuple(sorted(ended)),
+    )
+
+
+def _laws(
+    structure: BoltedStructure, preload: PreloadState, springs: int, frictions: Sequence[float] = FRICTION
+) -> dict[float, list[Microslip]]:
+    """The laws cut into sliders by the friction of joints that give none; only the median where each gives its own."""
+    given = [joint.friction for joint in structure.joints]
+    out = {}
+    for mu in frictions if None in given else FRICTION[1:2]:
+        try:
+            out[mu] = cut_laws(structure, preload, [mu if one is None else one for one in given], springs)
+        except InputError:  # a law has no stiffness that slips
+            return {}
+    return out
+
+
+def _march(
+    model: LevelModel,
+    mode: int,
+    curve: ModeCurve,
+    needs: Callable[[ModeCurve], float],
+    scale: float,
+    moved: float,
+    step: float,
+) -> tuple[ModeCurve, bool]:
+    """The curve of a mode from small amplitudes up to what is needed of it; whether it ends before.
+
+    scale: acceleration of the node that moves most over the amplitude at rest; moved: what loss makes of frequencies;
+    step: from level to level.
+    """
+    points: list[tuple[float, float, float]] = []
+    level = LOWEST * needs(curve) * scale
+    for _ in range(MOST_DOWN):
+        cycle = model.cycle(level, mode)
+        if cycle.damping < SLIGHT * curve.rest or level == 0:  # False where there is no answer
+            break
+        level /= DOWN
+    while level > 0:
+        cycle = model.cycle(level, mode)
+        if not np.isfinite(cycle.frequency):
+            return curve, True
+        amplitude = float(np.linalg.norm(cycle.motion[1]))
+        points.append((amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping))
+        amplitudes, speeds, slips = np.array(points).T
+        curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
+        if amplitude >= needs(curve):
+            break
+        level *= step
+    return curve, False

@@ -1,0 +1,446 @@
+"""From a preloaded structure and what shakes it to the levels of its modes, and what points, bolts and joints bear."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import log
+from typing import Any
+
+import numpy as np
+
+from faying.bolt.bolt import FittedBolt
+from faying.bolt.fatigue import FatigueCurve, bending_modulus, dirlik
+from faying.case.level_damping import FRICTION
+from faying.joint.bolted import BoltedStructure
+from faying.joint.equilibrium import PreloadState
+from faying.joint.modal import Vibration
+from faying.joint.springs import Springs
+from faying.notes import Note
+from faying.result.provenance import Provenance
+from faying.result.vibration import VibrationResponse
+from faying.service.curves import CurveSets, curve_sets
+from faying.service.excited import Excited
+from faying.service.mode_curve import ModeCurve
+from faying.service.spectra import greatest, resonance, rule, variance
+from faying.study.vibration import Excitation
+from faying.typing import Array, Complex
+
+PEAKS = {"random": 3.0, "sine": 1.0}  # of what is printed, at which margins are taken: 3 sigma, or the amplitude
+# of the same, up to which the curve of a mode is marched: one cycle of random vibration in 90 exceeds it
+CURVE_REACH = {"random": 3.0, "sine": 1.0}
+ANGLES = 24  # round a bolt at which its stress is looked at: of a sine between two of them 0.2 % is missed
+LINES, NEAR_LINES = 300, 12  # frequencies of a curve over the band, and on either side of each resonance
+AROUND, SAMPLES = (0.05, 3.0), 15  # levels at which a mode's damping is drawn, over the one that it reaches
+# quantities of the record that are found with their ends
+ANSWERS = (
+    "frequency",
+    "damping",
+    "level",
+    "acceleration",
+    "velocity",
+    "displacement",
+    "bolt_force",
+    "bolt_moment",
+    "bolt_shear",
+    "stress",
+    "head_motion",
+    "curve",
+)
+SWEPT = 2000  # frequencies of a sweep, and as many more near its resonances
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShakenBolt:
+    """Friction under the head of a bolt [-], and the curve of its fatigue; None where its size is not known."""
+
+    head_friction: float
+    fatigue: FatigueCurve | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaken:
+    """A structure at its preload, ready to be shaken.
+
+    Args:
+        title: What results call it.
+        structure, preload, springs, found: The structure, its equilibrium, the springs of its joints, its modes.
+        bolts: What friction and fatigue need of each bolt.
+        provenance: What it was made from.
+    """
+
+    title: str
+    structure: BoltedStructure
+    preload: PreloadState
+    springs: Sequence[Springs[Any]]
+    found: Vibration
+    bolts: Sequence[ShakenBolt]
+    provenance: Provenance
+
+    @property
+    def head_friction(self) -> Array:
+        """Under the head of each bolt [-] (b,)."""
+        return np.array([bolt.head_friction for bolt in self.bolts])
+
+    @property
+    def forces(self) -> Array:
+        """Force of each bolt under the preload [N] (b,)."""
+        return np.array(self.preload.bolt_forces)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Answering:
+    """What an answer needs beyond the curves: the structure under its excitation, and the stress of its bolts.
+
+    stress: what axial force and two bending moments make of it round each bolt (b, angle, 3) [Pa/N, Pa/(N m)].
+    """
+
+    base: Shaken
+    excited: Excited
+    stress: Array
+    lines: Array
+
+
+def vibrate(base: Shaken, excitation: Excitation) -> VibrationResponse:
+    """Answer one excitation with the intervals of friction and of damping at rest.
+
+    Raises InputError where nothing holds the structure against it, or a face or a point is not there.
+    """
+    excited = Excited.of(base.structure, base.springs, base.found, excitation)
+    elastic = slice(excited.rigid, None)
+    needs = [partial(_needed, excitation, float(abs(force))) for force in excited.force[elastic]]
+    sets = curve_sets(base.structure, base.preload, base.found, needs, excited.greatest[elastic])
+    lines = _lines(excitation, sets.best)
+    given = _Answering(base=base, excited=excited, stress=_stress(base.structure), lines=lines)
+    answer = partial(_random if excitation.kind == "random" else _sine, given)
+    best = answer(sets.best, FRICTION[1])
+    ends = [(answer(sets.at_rest(0), FRICTION[1]), answer(sets.at_rest(2), FRICTION[1]))]
+    if sets.least is not None and sets.most is not None:
+        ends.append((answer(sets.least, FRICTION[0]), answer(sets.most, FRICTION[2])))
+    return _record(given, sets, _with_ends(best, ends))
+
+
+def _needed(excitation: Excitation, force: float, curve: ModeCurve) -> float:
+    """The amplitude of a mode's coordinate up to which its curve is wanted."""
+    if excitation.kind == "random":
+        found = curve.balance(partial(variance, excitation.table, force))
+    else:
+        speeds = _swept(excitation, [curve])
+        found = float(np.abs(curve.forced(force * excitation.table.at(speeds / (2 * np.pi)), speeds)[0]).max())
+    return CURVE_REACH[excitation.kind] * found
+
+
+def _swept(excitation: Excitation, curves: Sequence[ModeCurve]) -> Array:
+    """Circular frequencies [rad/s] of a sweep: even in logarithms, finer where the modes softened or at rest are."""
+    first, last = excitation.table.frequencies[[0, -1]]
+    near = [_lines(excitation, curves)]
+    for curve in curves:
+        low = min(float(curve.speeds.min(initial=curve.speed)), curve.speed) / (2 * np.pi)
+        most = curve.speed / (2 * np.pi)
+        width = 1 + 10 * curve.rest
+        near.append(np.geomspace(low / width, most * width, SWEPT // (4 * len(curves)) + 100))
+    every = np.concatenate([np.geomspace(first, last, SWEPT), *near])
+    return 2 * np.pi * np.unique(every[(every >= first) & (every <= last)])
+
+
+def _lines(excitation: Excitation, curves: Sequence[ModeCurve]) -> Array:
+    """Frequencies [Hz] at which densities and amplitudes are drawn: finer near the resonances."""
+    first, last = excitation.table.frequencies[[0, -1]]
+    away = np.geomspace(0.1, 30, NEAR_LINES)
+    near = [curve.speed / (2 * np.pi) * (1 + curve.rest * np.concatenate([-away, [0.0], away])) for curve in curves]
+    every = np.concatenate([np.geomspace(first, last, LINES), *near])
+    return np.unique(every[(every >= first) & (every <= last)])
+
+
+def _stress(structure: BoltedStructure) -> Array:
+    """Stress round each bolt by axial force and two moments (b, angle, 3) [Pa/N, Pa/(N m)]; NaN without size."""
+    turns = np.linspace(0, 2 * np.pi, ANGLES, endpoint=False)
+    out = np.full((len(structure.bolts), ANGLES, 3), np.nan)
+    for k, fitted in enumerate(structure.fitted_bolts):
+        area = _area(fitted)
+        if area is not None:
+            around = np.stack([np.cos(turns), np.sin(turns)], axis=1) / bending_modulus(area)
+            out[k] = np.concatenate([np.full((ANGLES, 1), 1 / area), around], axis=1)
+    return out
+
+
+def _area(fitted: Any) -> float | None:
+    """The area [m2] of a bolt that fatigue looks at: the stress area of its thread, or that of its shank."""
+    if not isinstance(fitted, FittedBolt) or fitted.bolt.diameter is None:
+        return None
+    thread = fitted.bolt.metric
+    return float(np.pi / 4 * fitted.bolt.diameter**2) if thread is None else float(thread.stress_area)
+
+
+def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> dict[str, Array]:
+    """What random vibration makes of the structure: rms values, and damage a second."""
+    excited, table = given.excited, given.excited.excitation.table
+    forces = np.abs(excited.force[excited.rigid :])
+    sigmas = np.array([c.balance(partial(variance, table, f)) for c, f in zip(curves, forces.tolist(), strict=True)])
+    speeds, dampings = np.array([c.equivalent(s) for c, s in zip(curves, sigmas, strict=True)]).T
+    frequencies, weights = rule(table, speeds, dampings)
+    coordinates = _coordinates(excited, speeds, dampings, frequencies)
+    density = weights * table.at(frequencies)
+
+    def products(values: Complex) -> Array:
+        """Covariances (..., k, k) of what has the amplitudes (..., k, n)."""
+        return np.asarray(np.real((values * density) @ np.conj(np.swapaxes(values, -1, -2))))
+
+    out = _borne(given, coordinates, 1.0, frequencies, friction, products)
+    out |= {
+        "frequency": speeds / (2 * np.pi),
+        "damping": dampings,
+        "level": sigmas * speeds**2 * excited.greatest[excited.rigid :],
+    }
+    stress = _stresses(given, coordinates, 1.0)
+    powers = frequencies ** np.array([0, 1, 2, 4])[:, None]
+    moments = np.einsum("...n,pn->...p", np.abs(stress) ** 2, powers * density)
+    worst = np.argmax(np.nan_to_num(moments[..., 0]), axis=-1)[..., None]
+    out["stress"] = np.sqrt(np.take_along_axis(moments[..., 0], worst, axis=-1)[..., 0]).max(axis=1)
+    every = moments.reshape(len(moments), -1, 4)
+    out["damage"] = np.array(
+        [_most_damage(bolt.fatigue, some) for bolt, some in zip(given.base.bolts, every, strict=True)]
+    )
+    lines = _coordinates(excited, speeds, dampings, given.lines)
+    out["curve"] = np.abs(_along(excited, lines, 1.0, given.lines)) ** 2 * table.at(given.lines)
+    return out
+
+
+def _most_damage(curve: FatigueCurve | None, moments: Array) -> float:
+    """Damage a second [1/s] at the angle and the end (k, 4) where it is greatest; NaN where it is not known."""
+    if curve is None or np.isnan(moments).any():
+        return float("nan")
+    some = moments[np.argsort(moments[:, 0])[-ANGLES // 4 :]]  # the greatest variances, of which one has most damage
+    return max(dirlik(curve, one) for one in some)
+
+
+def _coordinates(excited: Excited, speeds: Array, dampings: Array, frequencies: Array) -> Complex:
+    """Coordinates of all modes (m, n), rigid motions first, under a unit input of frequencies [Hz] (n,)."""
+    none = np.zeros(excited.rigid)
+    moved = resonance(np.concatenate([none, speeds]), np.concatenate([none, dampings]), frequencies)
+    return np.asarray(excited.force[:, None] * moved)
+
+
+def _sine(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> dict[str, Array]:
+    """What a sweep makes of the structure: greatest amplitudes, and damage of one sweep."""
+    excited = given.excited
+    excitation = excited.excitation
+    drive = np.unique(np.concatenate([_swept(excitation, curves), 2 * np.pi * given.lines]))
+    frequencies = drive / (2 * np.pi)
+    amplitude = excitation.table.at(frequencies)
+    rigid = excited.force[: excited.rigid, None] * amplitude / -(drive**2)
+    forced = [c.forced(abs(f) * amplitude, drive) for c, f in zip(curves, excited.force[excited.rigid :], strict=True)]
+    signs = np.sign(excited.force[excited.rigid :])[:, None]
+    elastic = signs * np.array([one for one, _ in forced])
+    coordinates = np.concatenate([rigid, elastic]).astype(complex)
+
+    def products(values: Complex) -> Array:
+        """Products (..., k, k) of the amplitudes (..., k, n) at the frequency where the longest axis is greatest."""
+        every = np.real(np.einsum("...in,...jn->...nij", values, np.conj(values)))
+        worst = np.argmax(np.nan_to_num(greatest(every)), axis=-1)
+        return np.take_along_axis(every, worst[..., None, None, None], axis=-3)[..., 0, :, :]
+
+    out = _borne(given, coordinates, amplitude, frequencies, friction, products)
+    peaks = np.abs(elastic).max(axis=1)
+    at = [c.at(np.array(a)) for c, a in zip(curves, peaks, strict=True)]
+    speeds, dampings = np.array([[float(w), float(z)] for w, z in at]).T
+    out |= {
+        "frequency": speeds / (2 * np.pi),
+        "damping": dampings,
+        "level": peaks * speeds**2 * excited.greatest[excited.rigid :],
+        "jumps": np.array([float(jump.any()) for _, jump in forced]),
+    }
+    stress = np.abs(_stresses(given, coordinates, amplitude))
+    flat = stress.reshape(len(stress), -1, len(frequencies))
+    out["stress"] = flat.max(axis=(1, 2)) if flat.shape[1] else np.zeros(len(flat))
+    out["damage"] = np.array(
+        [_swept_damage(bolt.fatigue, some, frequencies) for bolt, some in zip(given.base.bolts, flat, strict=True)]
+    )
+    along = np.abs(_along(excited, coordinates, amplitude, frequencies))
+    out["curve"] = np.stack([np.interp(given.lines, frequencies, one) for one in along])
+    return out
+
+
+def _swept_damage(curve: FatigueCurve | None, stress: Array, frequencies: Array) -> float:
+    """Damage of a sweep [-] at one octave a minute, at the worst place; stress: amplitudes (k, n) [Pa]."""
+    if curve is None or np.isnan(stress).any():
+        return float("nan")
+    return 60 / log(2) * max(float(np.trapezoid(1 / curve.cycles(one), frequencies)) for one in stress)
+
+
+def _along(excited: Excited, coordinates: Complex, amplitude: Array | float, frequencies: Array) -> Complex:
+    """Absolute acceleration of the points along the excitation [m/s2] (p, n)."""
+    return np.asarray(
+        np.einsum("pin,i->pn", _acceleration(excited, coordinates, amplitude, frequencies), _direction(excited))
+    )
+
+
+def _direction(excited: Excited) -> Array:
+    return np.array(excited.excitation.direction)
+
+
+def _acceleration(excited: Excited, coordinates: Complex, amplitude: Array | float, frequencies: Array) -> Complex:
+    """Absolute acceleration of the points [m/s2] (p, 3, n)."""
+    moved = excited.transfer("motion", coordinates, amplitude)
+    base = _direction(excited)[:, None] * np.asarray(amplitude) if excited.excitation.base else 0.0
+    return np.asarray(base - (2 * np.pi * frequencies) ** 2 * moved)
+
+
+def _stresses(given: _Answering, coordinates: Complex, amplitude: Array | float) -> Complex:
+    """Stress round both ends of each bolt (b, end, angle, n) [Pa]."""
+    axial = given.excited.transfer("axial", coordinates, amplitude)
+    moments = given.excited.transfer("moments", coordinates, amplitude)
+    bending = np.einsum("bai,bein->bean", given.stress[..., 1:], moments)
+    return np.asarray(given.stress[:, None, :, :1] * axial[:, None, None] + bending)
+
+
+def _borne(
+    given: _Answering,
+    coordinates: Complex,
+    amplitude: Array | float,
+    frequencies: Array,
+    friction: float,
+    products: Callable[[Complex], Array],
+) -> dict[str, Array]:
+    """Motion of the points, forces of the bolts, and the margins of heads and joints.
+
+    products: of amplitudes (..., k, n) the (..., k, k) whose diagonal is the square of what is printed.
+    """
+    excited, structure, base = given.excited, given.base.structure, given.base
+    peak = PEAKS[excited.excitation.kind]
+
+    def each(values: Complex) -> Array:
+        return np.sqrt(products(values[..., None, :])[..., 0, 0])
+
+    motion = excited.transfer("motion", coordinates, amplitude)
+    axial = each(excited.transfer("axial", coordinates, amplitude))
+    across = _norms(products, excited.transfer("across", coordinates, amplitude))
+    carried = excited.transfer("carried", coordinates, amplitude)
+    normal, slip = each(carried[:, 0]), _norms(products, carried[:, 1:])
+    given_friction = [structure.joints[p.joint].friction for p in excited.patches]
+    mu = np.array([friction if one is None else one for one in given_friction])
+    pressed = np.array([p.pressed.normal for p in excited.patches])
+    left = np.maximum(base.forces - peak * axial, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        margin = mu * np.maximum(pressed - peak * normal, 0.0) / (peak * slip)
+        head = peak * across / (base.head_friction * left)
+    return {
+        "acceleration": each(_acceleration(excited, coordinates, amplitude, frequencies)),
+        "velocity": each(2j * np.pi * frequencies * motion),
+        "displacement": each(motion),
+        "bolt_force": axial,
+        "bolt_moment": _norms(products, excited.transfer("moments", coordinates, amplitude)).max(axis=1),
+        "bolt_shear": across,
+        "head_motion": head,
+        "margin": margin,
+    }
+
+
+def _norms(products: Callable[[Complex], Array], values: Complex) -> Array:
+    """Of vectors (..., k, n), what is printed of their component along the worst direction (...); NaN stays."""
+    known = np.asarray(~np.isnan(values).any(axis=(-1, -2)))
+    found = greatest(products(np.where(known[..., None, None], values, 0.0)))
+    return np.where(known, found, np.nan)
+
+
+def _with_ends(
+    best: Mapping[str, Array], ends: Sequence[tuple[Mapping[str, Array], Mapping[str, Array]]]
+) -> dict[str, Array]:
+    """Every quantity (3, ...): 5 %, best, 95 %. What is not known acts by factors, whose logarithms add in squares."""
+    out = {}
+    for name, middle in best.items():
+        low = high = np.zeros_like(middle)
+        known = np.isfinite(middle) & (middle > 0)
+        for pair in ends:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                moves = [np.where(known, np.log(one[name] / middle), 0.0) for one in pair]
+            low = low + np.minimum(np.minimum(*moves), 0.0) ** 2
+            high = high + np.maximum(np.maximum(*moves), 0.0) ** 2
+        out[name] = np.stack([middle * np.exp(-np.sqrt(low)), middle, middle * np.exp(np.sqrt(high))])
+    return out
+
+
+def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> VibrationResponse:
+    """The answers with what they belong to."""
+    base, excited, structure = given.base, given.excited, given.base.structure
+    excitation, elastic = excited.excitation, slice(excited.rigid, None)
+    times = excitation.duration if excitation.kind == "random" else 1 / excitation.rate if excitation.rate else None
+    margins = np.full((2, 3, len(structure.joints)), np.nan)
+    for k, patch in enumerate(excited.patches):
+        if patch.bolt < 0:
+            same = [n for n, other in enumerate(excited.patches) if other.joint == patch.joint]
+            margins[:, :, patch.joint] = found["margin"][:, k], found["margin"][:, same].min(axis=1)
+    moving = [bolt.guided_compliance if isinstance(bolt, FittedBolt) else np.nan for bolt in structure.fitted_bolts]
+    levels, damping = _curves(sets.best, found["frequency"][1], found["level"][1], excited.greatest[elastic])
+    return VibrationResponse(
+        title=base.title,
+        name=excitation.name,
+        kind=excitation.kind,
+        unit=excitation.unit,
+        preload=float(base.forces[0]) if len(base.forces) else 0.0,
+        base=int(excitation.base),
+        times=float("nan") if times is None else float(times),
+        bolts=tuple(bolt.name for bolt in structure.bolts),
+        joints=tuple(joint.name for joint in structure.joints),
+        direction=_direction(excited),
+        input_frequency=excitation.table.frequencies,
+        input_value=excitation.table.values,
+        rest_frequency=excited.speeds[elastic] / (2 * np.pi),
+        rest_damping=sets.rest,
+        share=excited.force[elastic] ** 2 / excited.mass if excitation.base else excited.force[elastic],
+        points=structure.mesh.points[excited.nodes],
+        line_frequency=given.lines,
+        damage=found["damage"] * (np.nan if times is None else times),
+        slide_motion=base.head_friction * base.forces * np.array(moving),
+        slip_margin=margins[0],
+        slip_margin_worst=margins[1],
+        curve_level=levels,
+        curve_damping=damping,
+        notes=tuple(_notes(given, sets, found)),
+        provenance=base.provenance,
+        **{name: found[name] for name in ANSWERS},
+    )
+
+
+def _curves(curves: Sequence[ModeCurve], frequency: Array, level: Array, greatest_motion: Array) -> tuple[Array, Array]:
+    """Level [m/s2] and damping ratio [-] of each mode (m, sample) about the level that it reaches."""
+    speeds = 2 * np.pi * frequency
+    sigmas = np.geomspace(*AROUND, SAMPLES) * (level / (speeds**2 * greatest_motion))[:, None]
+    found = np.array([[c.equivalent(float(s)) for s in row] for c, row in zip(curves, sigmas, strict=True)])
+    return sigmas * found[..., 0] ** 2 * greatest_motion[:, None], found[..., 1]
+
+
+def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> list[Note]:
+    """What is assumed, what was left out, and where joints slide."""
+    excitation, what = given.excited.excitation, f"vibration {given.excited.excitation.name!r}"
+    last = float(excitation.table.frequencies[-1])
+    modes = given.excited.speeds / (2 * np.pi)
+    out = []
+    if last > modes[-1]:
+        text = (
+            f"{what} goes up to {last:g} Hz, and the modes that were found up to {modes[-1]:.5g} Hz: what is beyond "
+            "answers as at rest; raise modes.count"
+        )
+        out.append(Note(code="vibration-band", text=text))
+    if sets.ended:
+        text = (
+            f"{what}: friction does not hold the joints against mode {', '.join(map(str, sets.ended))} at the level "
+            "that is reached; beyond the end of its curve frequency and damping stay"
+        )
+        out.append(Note(code="no-level-answer", text=text))
+    if np.any(found.get("jumps", np.zeros(1)) > 0):
+        text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
+        out.append(Note(code="vibration-jumps", text=text))
+    words = []
+    if sets.least is not None:
+        words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")
+    if not given.base.structure.predicts_loss:
+        low, middle, high = (f"{100 * one:g}" for one in sets.rest[:, 0])
+        words.append(f"{middle} % at rest, between {low} and {high} %")
+    if words:
+        out.append(Note(code="level-damping", text=f"damping under {what} assumes {' and '.join(words)}"))
+    text = (
+        f"{what}: each mode has the damping of its own level; where two modes that shake one joint are strong "
+        "together, the joint slips more than either alone makes it"
+    )
+    out.append(Note(code="vibration-alone", text=text))
+    return out
