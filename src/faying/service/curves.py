@@ -74,7 +74,8 @@ def curve_sets(
     rest = rest_damping(structure, found)
     speeds = 2 * np.pi * found.damped.frequencies
     plain = tuple(ModeCurve(speed=float(w), rest=float(z)) for w, z in zip(speeds, rest[1], strict=True))
-    laws = {} if any(joint.per_node for joint in structure.joints) else _laws(structure, preload, SPRINGS_AT_ENDS)
+    slips = bool(structure.joints) and not any(joint.per_node for joint in structure.joints)
+    laws = _laws(structure, preload, SPRINGS_AT_ENDS) if slips else {}
     if not laws:
         return CurveSets(best=plain, least=None, most=None, rest=rest)
     lossless = [replace(c, rest=float(z)) for c, z in zip(plain, rest[0], strict=True)]

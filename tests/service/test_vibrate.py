@@ -1,0 +1,239 @@
+"""Shaken structures against dense solutions of all their modes, a large mass, statics and closed forms."""
+
+import json
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.linalg import eigh, solve
+
+import faying
+from faying.joint.attachments import Support
+from faying.service.excited import Excited
+from tests.helpers.bars import SIMPLE, bars
+
+PRELOAD = 20e3
+BAND = (200.0, 30e3)
+REST = 1.6e-3  # the median of what structures at rest have
+
+
+@pytest.fixture(scope="module")
+def state():
+    return bars(friction=1.0, held=True).structure.solve(preload=PRELOAD, modes=12)
+
+
+def noise(value, band=BAND, **more):
+    return faying.Excitation("noise", psd=[(f, value) for f in band], **more)
+
+
+def matrices(structure, springs):
+    """Dense stiffness and mass of everything, fixed unknowns included, and which are free."""
+    whole = np.eye(structure.mesh.unknowns)
+    K = structure.elastic_forces(whole) + structure.joint_stiffness(springs).toarray()
+    M = structure.inertia(whole)
+    free = np.setdiff1d(np.arange(len(K)), structure.fixed)
+    return K, M, free
+
+
+@pytest.mark.parametrize("direction", [(1, 0, 0), (0, 1, 2)])
+def test_a_shaken_base_has_the_rms_of_all_modes(state, direction):
+    """All modes of the dense matrices by quadrature; what the modes that are left out do at rest is 1e-3 of it."""
+    structure = state.structure
+    (found,) = faying.vibration(state, [noise(1e-6, direction=direction)])
+    K, M, free = matrices(structure, state.springs)
+    squared, shapes = eigh(K[np.ix_(free, free)], M[np.ix_(free, free)])
+    along = np.tile(np.array(direction) / np.linalg.norm(direction), len(structure.mesh.points))
+    force = shapes.T @ -(M @ along)[free]
+    speeds = np.sqrt(squared)
+    fixed = along[structure.fixed] @ (M @ along)[structure.fixed]  # mass that does not move against the base
+    node = int(np.argmin(np.linalg.norm(structure.mesh.points - found.points[1], axis=1)))
+    moved = np.zeros((len(K), len(squared)))
+    moved[free] = shapes
+    pull = structure.bolt_force_operator @ moved
+
+    def answer(f):
+        drive = 2 * np.pi * f
+        q = force / (squared - drive**2 + 2j * REST * speeds * drive)
+        acceleration = along[:3] - drive**2 * moved[3 * node : 3 * node + 3] @ q
+        return 1e-6 * np.abs(np.concatenate([acceleration, pull @ q])) ** 2
+
+    inside = speeds[speeds < 2 * np.pi * BAND[1]] / (2 * np.pi)
+    edges = np.unique(np.clip(np.outer(inside, 1 + REST * np.array([-100, -10, -1, 0, 1, 10, 100])), *BAND))
+    edges = np.unique([*edges, *BAND])
+    exact = np.zeros(4)
+    for low, high in pairwise(edges):
+        x, w = np.polynomial.legendre.leggauss(24)
+        f = (low + high) / 2 + (high - low) / 2 * x
+        exact += (high - low) / 2 * np.sum([one * answer(at) for at, one in zip(f, w, strict=True)], axis=0)
+    rms = np.sqrt(exact)
+    got = np.concatenate([found.acceleration[1, 1], found.bolt_force[1]])
+    seen = rms > 1e-6 * rms[:3].max()
+    assert got[seen] == pytest.approx(rms[seen], rel=2e-3)
+    assert found.share.sum() == pytest.approx(np.sum(force[:12] ** 2) / (along @ M @ along - fixed), rel=1e-6)
+
+
+def test_supports_that_move_are_a_large_mass_that_a_force_pulls(state):
+    """1e6 times the mass on the nodes of the support; undamped, between the resonances."""
+    structure = state.structure
+    K, M, _ = matrices(structure, state.springs)
+    heavy = np.array(M)
+    mass = 1e6 * M.sum()
+    heavy[structure.fixed, structure.fixed] += mass
+    along = np.zeros(len(K))
+    along[structure.fixed[0::3]] = 1.0  # along x
+    excited = Excited.of(structure, state.springs, state.vibration, noise(1.0, direction=(1, 0, 0)))
+    for f in np.array([0.4, 0.9, 1.1]) * state.frequencies[0]:
+        drive = 2 * np.pi * f
+        u = solve(K - drive**2 * heavy, mass * along)
+        base = u[structure.fixed[0]]
+        q = excited.force / (excited.speeds**2 - drive**2)
+        moved = excited.transfer("motion", q[:, None])[:, :, 0]
+        for node, row in zip(excited.nodes, moved, strict=True):
+            there = u[3 * node : 3 * node + 3] - base * np.array([1, 0, 0])
+            assert row == pytest.approx(there / (-(drive**2) * base), rel=1e-3, abs=1e-3 * np.abs(moved).max())
+
+
+def test_far_below_the_first_mode_everything_is_the_load_case_of_an_acceleration(state):
+    """All numbers in proportion to those under 1 m/s2, which `load_cases` solves by itself, to (f/f_1)^2."""
+    band = (0.5, 0.002 * state.frequencies[0])
+    (found,) = faying.vibration(state, [noise(1e-4, band, direction=(0, 0, 1))])
+    rms = np.sqrt(1e-4 * (band[1] - band[0]))
+    case = faying.Load("pull", acceleration=(0, 0, rms))
+    static = faying.load_cases(state, loads=[case], modes=False)
+    assert found.bolt_moment[1] == pytest.approx(static.bolt_moment[0], rel=1e-4)
+    assert found.bolt_shear[1] == pytest.approx(static.bolt_shear[0], rel=1e-4)
+    assert found.head_motion[1] == pytest.approx(3 * static.bolt_shear[0] / (0.12 * PRELOAD), rel=1e-4)
+    assert found.slip_margin[1] == pytest.approx(static.slip_margin[0] / 3, rel=2e-2)  # 3 sigma also lifts the joint
+    assert found.acceleration[1, :, 2] == pytest.approx(rms, rel=1e-4)
+
+
+def test_the_head_slides_at_the_deflection_of_a_guided_cantilever():
+    """mu F L^3/(12 E I) with the shear of the beam, 1 + phi, phi = 12 E I/(kappa G A L^2); nu = 0, kappa = 6/7."""
+    state = bars(held=True).structure.solve(preload=PRELOAD, modes=3)
+    (found,) = faying.vibration(state, [noise(1e-6)])
+    d, length, E = 8e-3, 0.06, 200e9
+    inertia, area = np.pi / 64 * d**4, np.pi / 4 * d**2
+    phi = 12 * E * inertia / (6 / 7 * E / 2 * area * length**2)
+    exact = 0.12 * PRELOAD * (1 + phi) * length**3 / (12 * E * inertia)
+    assert found.slide_motion[0] == pytest.approx(exact, rel=1e-3)
+
+
+def test_a_force_that_turns_turns_its_answer(state):
+    """The section is square: y and z are alike."""
+    point = state.structure.mesh.points[np.argmax(state.structure.mesh.points @ [1.0, 1e-3, 1e-3])]
+    pair = [
+        faying.Excitation(
+            "f", psd=[(f, 1e-6) for f in BAND], direction=d, point=point.tolist(), points=[point.tolist()]
+        )
+        for d in ((0, 1, 0), (0, 0, 1))
+    ]
+    first, second = faying.vibration(state, pair)
+    assert first.acceleration[1, 0, 1] == pytest.approx(second.acceleration[1, 0, 2], rel=1e-6)
+    assert first.bolt_moment[1] == pytest.approx(second.bolt_moment[1], rel=1e-6)
+    assert first.stress[1] == pytest.approx(second.stress[1], rel=1e-2)  # angles round the bolt
+    assert not first.base
+
+
+def test_more_input_means_more_damping_and_less_than_in_proportion():
+    levels = [
+        faying.vibration(
+            bars(friction=0.05, held=True).structure.solve(PRELOAD, modes=3), [noise(g, direction=(0, 0, 1))]
+        )[0]
+        for g in (1e-4, 1e-1)
+    ]
+    assert levels[1].damping[1, 0] > levels[0].damping[1, 0] > 0.999 * REST
+    assert levels[1].level[1, 0] < np.sqrt(1e3) * levels[0].level[1, 0]
+    low, best, high = levels[1].level[:, 0]
+    assert low < best < high
+
+
+def test_a_sweep_that_is_slow_has_the_peak_of_its_mode(state):
+    """At resonance a linear mode has 1/(2 zeta) times the input times its share of the motion."""
+    sweep = faying.Excitation(
+        "s", sine=[(f, 1e-3) for f in (500.0, 1.2 * state.frequencies[0])], direction=(0, 0, 1), rate=1.0
+    )
+    (found,) = faying.vibration(state, [sweep])
+    excited = Excited.of(state.structure, state.springs, state.vibration, sweep)
+    k = int(np.argmax(found.level[1]))
+    exact = 1e-3 * abs(excited.force[k]) * excited.greatest[k] / (2 * found.damping[1, k])
+    assert found.level[1, k] == pytest.approx(exact, rel=1e-3)
+
+
+def test_damage_of_a_duration_and_the_life_agree(state):
+    (found,) = faying.vibration(state, [noise(0.3, duration="2 h", direction=(0, 0, 1))])
+    assert found.damage[1, 0] > 0
+    assert found.life[1, 0] * found.damage[1, 0] == pytest.approx(7200)
+    assert np.all(np.diff(found.damage[:, 0]) >= 0)
+    assert np.all(np.diff(found.life[:, 0]) >= 0)
+
+
+def test_what_is_saved_is_read_and_json_has_it(state, tmp_path):
+    (found,) = faying.vibration(state, [noise(1e-6, duration=60.0)])
+    assert faying.load(found.save(tmp_path / "v.nc")) == found
+    assert json.loads(json.dumps(found.to_dict()))["kind"] == "random"
+    assert "rms" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("given", "held", "why"),
+    [
+        ({}, False, "add a \\[\\[support\\]\\], or give face or point"),
+        ({"direction": (0, 0, 1)}, "x", "no support holds the structure along direction"),
+        ({"face": "p1.top"}, True, "p1.top"),
+        ({"point": (1.0, 0.0, 0.0)}, True, "nearest node"),
+        ({"points": [(1.0, 0.0, 0.0)]}, True, "nearest node"),
+    ],
+)
+def test_what_cannot_be_shaken_is_said(given, held, why):
+    built = bars().structure
+    supports = [] if not held else [Support(face="p0.left", directions=("x",) if held == "x" else ("x", "y", "z"))]
+    structure = faying.Structure(
+        mesh=built.mesh,
+        materials=dict.fromkeys(built.mesh.parts, SIMPLE),
+        joints=built.joints,
+        bolts=built.bolts,
+        supports=supports,
+    )
+    state = structure.solve(preload=PRELOAD, modes=3)
+    with pytest.raises(faying.InputError, match=why):
+        faying.vibration(state, [noise(1e-6, **given)])
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"psd": [("20 Hz", "0.1 g^2/Hz")]}, "two rows or more"),
+        ({"psd": [("40 Hz", "0.1 g^2/Hz"), ("30 Hz", "0.1 g^2/Hz")]}, "let frequencies rise"),
+        ({"psd": [("40 Hz", "0.1 g^2/Hz"), ("40 Hz", "0.1 g^2/Hz")]}, "let frequencies rise"),
+        ({"psd": [("20 Hz", "-0.1 g^2/Hz"), ("30 Hz", "0.1 g^2/Hz")]}, "must be positive"),
+        ({"psd": [("20 Hz", "0.1 N^2/Hz"), ("30 Hz", "0.1 g^2/Hz")]}, "not in a unit like"),
+        ({"psd": [("20 Hz", "0.1"), ("30 Hz", "0.1 g^2/Hz")]}, "has no unit"),
+        ({"psd": [("20 Hz", "3 dB/oct"), ("30 Hz", "3 dB/oct")]}, "slope"),
+        ({"sine": [("20 Hz", "1 g"), ("30 Hz", "1 g")], "duration": "1 s"}, "duration belongs to psd"),
+        ({"sine": [("20 Hz", "1 g"), ("30 Hz", "1 g")], "rate": 1e5}, "rate"),
+        ({}, "either psd or sine"),
+        ({"psd": [(20, 1), (30, 1)], "direction": (0, 0, 0)}, "not all 0"),
+    ],
+)
+def test_bad_tables_are_refused_with_the_right_form(given, why):
+    with pytest.raises(faying.InputError, match=why):
+        faying.Excitation("bad", **given)
+
+
+def test_slopes_are_decibels_an_octave_of_power_and_of_amplitude():
+    """The qualification level of NASA GSFC-STD-7000 for small units: 14.1 g rms; half of it at -6 dB."""
+    rows = [("20 Hz", "0.026 g^2/Hz"), ("50 Hz", "0.16 g^2/Hz"), ("800 Hz", "0.16 g^2/Hz"), ("2000 Hz", "0.026 g^2/Hz")]
+    assert faying.Excitation("GEVS", psd=rows).table.rms / 9.80665 == pytest.approx(14.1, abs=0.05)
+    rise = faying.Excitation("rise", psd=[("20 Hz", "+6 dB/oct"), ("80 Hz", "1 g^2/Hz"), ("160 Hz", "-3 dB/oct")]).table
+    assert rise.values / 9.80665**2 == pytest.approx([10**-1.2, 1.0, 10**-0.3])
+    sine = faying.Excitation("sine", sine=[("10 Hz", "1 g"), ("20 Hz", "6.0206 dB/oct")]).table
+    assert sine.values / 9.80665 == pytest.approx([1.0, 2.0], rel=1e-6)
+    assert rise.rms**2 == pytest.approx(quad(lambda x: float(rise.at(np.array(x))), 20, 160, points=[80])[0], rel=1e-6)
+    assert rise.at(np.array([19.0, 161.0])).tolist() == [0.0, 0.0]
+
+
+def test_a_table_comes_from_a_file(tmp_path):
+    file = tmp_path / "psd.csv"
+    file.write_text("frequency [Hz], psd [g^2/Hz]\n20, 0.01\n80, 0.04\n")
+    assert faying.Excitation("f", psd=file).table.values / 9.80665**2 == pytest.approx([0.01, 0.04])
