@@ -11,7 +11,7 @@ CURVE = FatigueCurve(endurance=50e6, slope=3.0, slope_below=5.0)
 
 
 def rainflow(series):
-    """Amplitudes of the closed cycles of a series, by the method of four points; the few that stay open are left out."""
+    """Amplitudes of the closed cycles of a series, by the method of four points; those that stay open are left out."""
     turns = series[np.concatenate([[True], np.diff(np.sign(np.diff(series))) != 0, [True]])]
     stack, out = [], []
     for one in turns.tolist():

@@ -37,7 +37,7 @@ class Bars:
         return self.members / (self.bolt + self.members)
 
 
-def bars(*, friction=None, held=False, law=None, diameter="8 mm", kind="hex20", count=2):
+def bars(*, friction=None, held=False, law=None, diameter="8 mm", kind="hex20", count=2, bolt_friction=None):
     """Bars along x, pressed together over their whole ends by a bolt through both; held: by the left end."""
     mesh = row(
         [LENGTH, LENGTH], [count, count], kinds=(kind, kind), sections=((1, 1), (1, 1)), width=WIDTH, height=WIDTH
@@ -49,7 +49,7 @@ def bars(*, friction=None, held=False, law=None, diameter="8 mm", kind="hex20", 
         law=law or even(),
         friction=friction,
     )
-    given = {} if diameter is None else {"diameter": diameter, "material": SIMPLE}
+    given = {} if diameter is None else {"diameter": diameter, "material": SIMPLE, "friction": bolt_friction}
     bolt = faying.Bolt("b", ("p0.left", "p1.right"), **given)
     structure = Structure(
         mesh=mesh,

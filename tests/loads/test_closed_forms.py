@@ -7,6 +7,7 @@ import pytest
 
 import faying
 from faying.case.case import Progress
+from faying.case.service_bolts import service_bolts
 from faying.fe.bonded import bonded_mesh
 from faying.fe.interface import join
 from faying.joint.attachments import PointMass, Support
@@ -245,6 +246,7 @@ def test_displacement_of_a_support(held):
         factor=near_factor(both, tight.springs, None),
         rest=None,
         modes=lambda _: pytest.fail("no modes are asked for"),
+        bolts=service_bolts(both),
     )
     move = 1e-7
     loads = (
@@ -305,3 +307,21 @@ def test_a_load_that_nothing_holds_is_refused(free):
         faying.load_cases(state, [faying.Load("m", displacements=[faying.Displacement("p1.right", (1e-6, 0, 0))])])
     with pytest.raises(faying.InputError, match="neither a part nor a bolt; give one of 'p0', 'p1', 'b'"):
         faying.load_cases(state, [faying.Load("m", temperature={"nut": 3.0})])
+
+
+def test_cycles_of_a_load_damage_the_bolt_by_its_own_change_of_force():
+    """Half of the range over the stress area; from the preload, or from the case before. VDI 2230's slopes."""
+    made = bars(friction=None, held=True)
+    state = made.structure.solve(preload=PRELOAD, modes=1)
+    pull = faying.Load("pull", forces=[faying.Force("p1.right", force=(4e3, 0, 0))], cycles=1e6)
+    back = faying.Load("back", forces=[faying.Force("p1.right", force=(-4e3, 0, 0))], after="pull", cycles=5e7)
+    found = faying.load_cases(state, loads=[pull, back], modes=False)
+    area = np.pi / 4 * (8e-3 - (0.6495 + 1.2269) / 2 * 1.25e-3) ** 2  # of the thread M8, ISO 898-1
+    change = found.bolt_force[:, 0] - PRELOAD
+    ranges = np.array([change[0], change[1] - change[0]])
+    assert found.stress_amplitude[:, 0] == pytest.approx(np.abs(ranges) / (2 * area), rel=1e-4)
+    endurance = 0.85 * (150 / 8 + 45) * 1e6
+    slopes = np.where(found.stress_amplitude[:, 0] > endurance, 3, 5)
+    exact = np.array([1e6, 5e7]) / 2e6 * (found.stress_amplitude[:, 0] / endurance) ** slopes
+    assert found.damage[:, 0] == pytest.approx(exact, rel=1e-9)
+    assert np.isnan(found.head_motion).all()  # nothing is said of the friction under the head

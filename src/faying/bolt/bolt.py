@@ -664,3 +664,11 @@ class FittedBolt(BoltPlace):
         turn = np.array([1, -1, 1, -1])  # in the other plane a positive rotation lowers the deflection
         beam[np.ix_([2, 4, 8, 10], [2, 4, 8, 10])] += block * np.outer(turn, turn)
         return beam
+
+
+def fatigue_area(fitted: object) -> float:
+    """The area [m2] of a bolt that fatigue looks at: the stress area of its thread, or its shank; NaN without one."""
+    if not isinstance(fitted, FittedBolt) or fitted.bolt.diameter is None:
+        return float("nan")
+    thread = fitted.bolt.metric
+    return pi / 4 * fitted.bolt.diameter**2 if thread is None else thread.stress_area

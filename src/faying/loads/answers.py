@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from faying.bolt.bolt import Bolt, FittedBolt
+from faying.bolt.bolt import FittedBolt, fatigue_area
+from faying.bolt.fatigue import bending_modulus
 from faying.joint.bolted import BoltedStructure
 from faying.joint.carried import PressedPatch
 from faying.joint.load_path import LoadPaths
 from faying.joint.strength import least_seat_area
 from faying.loads.contact import LoadedContact
-from faying.loads.crossing import bent, own_heat, transverse_loads
+from faying.loads.crossing import Bent, bent, own_heat, transverse_loads
 from faying.loads.statics import LoadedState
 from faying.typing import Array, Index, Mask
 
@@ -92,6 +93,7 @@ def bolt_answers(
     contacts: Sequence[LoadedContact],
     preload: Array,
     states: Sequence[tuple[LoadedState, Array, Array]],
+    starts: Sequence[int | None],
     paths: LoadPaths,
 ) -> dict[str, Any]:
     """Return what the bolts do, arrays (case, bolt) by their names in `LoadCases`.
@@ -101,6 +103,7 @@ def bolt_answers(
         contacts: Of each joint.
         preload: Force of each bolt [N] (b,) before any load.
         states: Of each case: its equilibrium, its displacement and the linear one [m] (unknowns,).
+        starts: Of each case: the case from whose state it starts; None for the preload.
         paths: Which joints each bolt clamps, and which of their points are its own.
     """
     change, linear, ends, working, transverse = [], [], [], [], []
@@ -109,15 +112,17 @@ def bolt_answers(
         ends_here = [bent(structure, k, state, motion) for k in range(len(here))]
         change.append(here)
         linear.append(bolt_changes(structure, state, straight))
-        ends.append([(one.moment, float(np.linalg.norm(one.shear))) for one in ends_here])
+        ends.append(ends_here)
         crossing = cut_loads(contacts, state, paths, here)
         # F_A: of several cuts the one that more crosses; not known of a bolt that holds no joint
         working.append([max(loads, key=abs, default=NAN) for loads in crossing])
         transverse.append(transverse_loads(structure, contacts, state, paths, ends_here))
-    moment, shear = np.moveaxis(np.array(ends), 2, 0)
+    moment = np.array([[one.moment for one in row] for row in ends])
+    shear = np.array([[float(np.linalg.norm(one.shear)) for one in row] for row in ends])
     force, load = preload + np.array(change), np.array(working)
     some = np.abs(load) > NOTHING * preload  # not where F_A is not known
-    areas = np.array([least_seat_area(structure, one) for one in structure.fitted_bolts])
+    bolts = structure.fitted_bolts
+    areas = np.array([least_seat_area(structure, one) for one in bolts])
     return {
         "bolt_force": force,
         "bolt_force_linear": preload + np.array(linear),
@@ -127,9 +132,26 @@ def bolt_answers(
         "load_factor": np.where(some, np.array(change) / np.where(some, load, 1.0), NAN),
         "transverse_load": np.array(transverse),
         "seat_pressure": force / areas,
-        "head_friction": np.array([_head_friction(fitted.bolt) for fitted in structure.fitted_bolts]),
+        "stress_amplitude": np.array(
+            [_stresses(structure, change, ends, k, start) for k, start in enumerate(starts)]
+        ).reshape(force.shape),
         "head_friction_needed": np.where(force > 0, shear / np.where(force > 0, force, 1.0), NAN),
     }
+
+
+def _stresses(
+    structure: BoltedStructure, change: Sequence[Array], ends: Sequence[Sequence[Bent]], case: int, start: int | None
+) -> list[float]:
+    """Half of the range of stress [Pa] of each bolt where it is greatest, from the start of a case to it."""
+    out = []
+    for b, fitted in enumerate(structure.fitted_bolts):
+        force, moments = change[case][b], ends[case][b].moments
+        if start is not None:
+            force, moments = force - change[start][b], moments - ends[start][b].moments
+        area = fatigue_area(fitted)
+        bending = np.linalg.norm(moments, axis=1).max() / bending_modulus(area)
+        out.append(float(abs(force) / area + bending) / 2)
+    return out
 
 
 def bolt_changes(structure: BoltedStructure, state: LoadedState, motion: Array) -> Array:
@@ -156,7 +178,3 @@ def cut_loads(
         [float(change[k] - sum(lost[j][paths.owner[j] == k].sum() for j in cut.joints)) for cut in cuts]
         for k, cuts in enumerate(paths.cuts)
     ]
-
-
-def _head_friction(bolt: object) -> float:
-    return NAN if not isinstance(bolt, Bolt) or bolt.friction is None else bolt.friction[1]

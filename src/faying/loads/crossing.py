@@ -23,13 +23,18 @@ class Bent:
     """How a bolt is bent; NaN without a shank.
 
     Args:
-        moment: The greater bending moment [N m] of its ends.
+        moments: Bending moments [N m] about two axes across it, at its ends (end, 2).
         shear, torsion: Force across it [N] (3,) and torque about it [N m] on the part under its head.
     """
 
-    moment: float
+    moments: Array
     shear: Array
     torsion: float
+
+    @property
+    def moment(self) -> float:
+        """The greater bending moment of its ends [N m]."""
+        return float(np.linalg.norm(self.moments, axis=1).max())
 
 
 def bent(structure: BoltedStructure, index: int, state: LoadedState, motion: Array) -> Bent:
@@ -38,9 +43,8 @@ def bent(structure: BoltedStructure, index: int, state: LoadedState, motion: Arr
     heat = own_heat(structure, fitted, state) if isinstance(fitted, FittedSolidBolt) else None
     found = shank_forces(structure, index, motion, heat)
     if found is None:
-        return Bent(moment=NAN, shear=np.full(3, NAN), torsion=NAN)
-    moment = float(np.linalg.norm(found.moments, axis=1).max())
-    return Bent(moment=moment, shear=found.shear @ found.across, torsion=float(found.torsion))
+        return Bent(moments=np.full((1, 2), NAN), shear=np.full(3, NAN), torsion=NAN)
+    return Bent(moments=found.moments, shear=found.shear @ found.across, torsion=float(found.torsion))
 
 
 def own_heat(structure: BoltedStructure, fitted: FittedSolidBolt, state: LoadedState) -> Array:

@@ -98,6 +98,16 @@ class LoadCases(Recorded):
     head_friction_needed: Array = variable(
         "case bolt", "1", "force across the bolt over its force", "bolts/", gaps=True
     )
+    cycles: Array = variable("case", "1", "how often the load comes and goes")
+    stress_amplitude: Array = variable(
+        "case bolt",
+        "Pa",
+        "half of the range of stress where it is greatest, from the start of the case",
+        "bolts/",
+        gaps=True,
+    )
+    damage: Array = variable("case bolt", "1", "damage by the cycles, 1 at failure", "bolts/", gaps=True)
+    slide_motion: Array = variable("bolt", "m", "transverse motion of the head at which it slides", "bolts/", gaps=True)
     dowels: tuple[str, ...] = ()
     dowel_shear: Array | None = optional("case dowel", "N", "greatest shear force of the dowel by the load", "dowels/")
     dowel_bearing: Array | None = optional(
@@ -147,6 +157,11 @@ class LoadCases(Recorded):
         return _margin(self.head_friction, self.head_friction_needed)
 
     @property
+    def head_motion(self) -> Array:
+        """Transverse motion of each head over the motion at which it slides (case, bolt); NaN where not known."""
+        return np.asarray(self.head_friction_needed / self.head_friction)
+
+    @property
     def superposes(self) -> Any:
         """Whether the linear answer would have done, to 1 % (case,)."""
         return self.superposition <= ENOUGH
@@ -192,7 +207,9 @@ class LoadCases(Recorded):
 
     def to_dict(self) -> dict[str, Any]:
         """Return all but the maps in SI units, for JSON; infinite margins are None."""
-        margins = {name: getattr(self, name) for name in ("slip_margin", "slip_margin_worst", "head_margin")}
+        margins = {
+            name: getattr(self, name) for name in ("slip_margin", "slip_margin_worst", "head_margin", "head_motion")
+        }
         finite = {name: np.where(np.isfinite(one), one, np.nan) for name, one in margins.items()}
         return {
             "title": self.title,

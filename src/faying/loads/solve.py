@@ -10,6 +10,7 @@ from faying.case.acting import Acting, acting, nothing
 from faying.case.case import Case, Progress, bare
 from faying.case.engine import Engine, engine_of
 from faying.case.provenance import provenance
+from faying.case.service_bolts import ServiceBolt, head_frictions, service_bolts
 from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
@@ -32,7 +33,6 @@ from faying.numerics.follow import partners
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
 from faying.result.provenance import Provenance
-from faying.study.keys.bolt_sheet import choice_of
 from faying.study.load import Load, in_order
 from faying.study.study import Study
 from faying.typing import Array
@@ -52,7 +52,7 @@ class Preloaded:
         modes: Frequencies and shapes under other springs.
         notes: What there was to say so far.
         provenance: What it was made from.
-        head_friction: Of each bolt [-], NaN where none is said apart from the bolt itself.
+        bolts: What is known of each bolt.
     """
 
     title: str
@@ -64,7 +64,7 @@ class Preloaded:
     modes: Callable[[Sequence[Springs[Any]]], tuple[Array, Any]]
     notes: tuple[Note, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)
-    head_friction: Array | None = None
+    bolts: tuple[ServiceBolt, ...]
 
 
 def preloaded(study: Study, number: int, progress: Progress, *, modes: bool) -> Preloaded:
@@ -91,7 +91,6 @@ def preloaded_case(
     if modes:
         vibration = engine.vibrate(springs)
         rest, factor = (vibration.damped.frequencies, vibration.damped.shapes), vibration.modes.factorisation
-    friction = [choice_of(study.bolt_sheets, bolt.name).head_friction for bolt in study.bolts]
     return Preloaded(
         title=study.title,
         structure=structure,
@@ -102,7 +101,7 @@ def preloaded_case(
         modes=found,
         notes=case.notes,
         provenance=provenance(study),
-        head_friction=np.array([np.nan if one is None else one for one in friction]),
+        bolts=service_bolts(structure, study),
     )
 
 
@@ -139,6 +138,7 @@ def of_state(state: State, modes: bool) -> Preloaded:
         rest=found(state.springs) if modes else None,
         modes=found,
         notes=state.notes,
+        bolts=service_bolts(structure),
     )
 
 
@@ -210,10 +210,10 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
     dissipated = [np.sum([one.dissipated for one in found[load.name]], axis=0) for load in loads]
     paths = LoadPaths.of(structure)
     forces = np.array(base.preload.bolt_forces)
-    arrays = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), paths)
-    if base.head_friction is not None:
-        stated = base.head_friction
-        arrays["head_friction"] = np.where(np.isnan(stated), arrays["head_friction"], stated)
+    names = [load.name for load in loads]
+    starts = [None if load.after is None else names.index(load.after) for load in loads]
+    arrays = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), starts, paths)
+    arrays |= _in_service(base.bolts, forces, arrays["stress_amplitude"], [load.cycles for load in loads])
     arrays |= joint_answers(structure, contacts, states, dissipated, paths)
     with_linear = arrays["bolt_force"], arrays["bolt_force_linear"]
     pressures = [[-traction[:, 0] for traction in state.tractions] for state in states]
@@ -242,9 +242,23 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         **_dowels(structure, motions),
         notes=(*base.notes, *load_notes(structure, contacts, [load.name for load in loads], pressures, arrays)),
         provenance=base.provenance,
+        cycles=np.array([load.cycles for load in loads]),
         **arrays,
         **modes,
     )
+
+
+def _in_service(
+    bolts: Sequence[ServiceBolt], forces: Array, stress: Array, cycles: Sequence[float]
+) -> dict[str, Array]:
+    """Friction under heads, where they slide, and damage by cycles of the stress amplitudes [Pa] (case, bolt)."""
+    pairs = list(zip(bolts, forces.tolist(), strict=True))
+    damage = [[b.damage(a, n) for b, a in zip(bolts, row, strict=True)] for row, n in zip(stress, cycles, strict=True)]
+    return {
+        "head_friction": head_frictions(bolts),
+        "slide_motion": np.array([bolt.slide_motion(force) for bolt, force in pairs]),
+        "damage": np.array(damage).reshape(stress.shape),
+    }
 
 
 def _departure(

@@ -15,6 +15,7 @@ from faying.units import show
 WIDTH = 80
 CASES_IN_TABLE = 3  # cases in one table of frequencies
 MAX_MODES = 10  # that the table of frequencies has
+SERVICE = "bolts in service: alternating stress, damage, and motion of the head over that at which it slides"
 SCOPE = (
     "Forces in N where no unit is given, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
     "bolt; Phi: change of the bolt's force over it, as found; M, V: bending moment of the bolt and force across it; "
@@ -35,6 +36,8 @@ def terminal(found: LoadCases) -> str:
     for first in range(0, len(found.cases), CASES_IN_TABLE):
         modes = mode_rows(found, slice(first, first + CASES_IN_TABLE))
         lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
+    service = service_rows(found)
+    lines += [*wrapped(SERVICE), text(service, left=(0, 1)), ""] if service else []
     lines += interval_lines(found)
     lines += wrapped(SCOPE)
     for note in found.notes:
@@ -82,6 +85,21 @@ def joint_rows(found: LoadCases, k: int) -> Rows:
         ("margin", map(margin, found.slip_margin[k]), ""),
         ("worst", map(margin, found.slip_margin_worst[k]), ""),
     )
+
+
+def service_rows(found: LoadCases) -> Rows:
+    """One row for each case: the bolt whose stress changes most, its damage, and the head that is nearest to slide."""
+    rows: Rows = [["load", "bolt", "+- [MPa]", "cycles", "damage", "head", "motion", "slides at [um]"]]
+    for k, name in enumerate(found.cases):
+        stress, motion = found.stress_amplitude[k], found.head_motion[k]
+        if not len(stress) or np.isnan(stress).all():
+            continue
+        b = int(np.nanargmax(stress))
+        h = b if np.isnan(motion).all() else int(np.nanargmax(motion))
+        damage = _short(found.damage[k, b]) if found.cycles[k] else "-"
+        cells = [_cut(name, 12), _cut(found.bolts[b], 8), _short(stress[b] / 1e6), f"{found.cycles[k]:.3g}", damage]
+        rows.append([*cells, _cut(found.bolts[h], 8), _short(motion[h]), _short(1e6 * found.slide_motion[h])])
+    return rows if len(rows) > 1 else []
 
 
 def dowel_rows(found: LoadCases, k: int) -> Rows:

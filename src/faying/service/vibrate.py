@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from faying.bolt.bolt import FittedBolt
+from faying.bolt.bolt import fatigue_area
 from faying.bolt.fatigue import FatigueCurve, bending_modulus, dirlik
 from faying.case.level_damping import FRICTION
+from faying.case.service_bolts import ServiceBolt, head_frictions
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
@@ -50,14 +51,6 @@ SWEPT = 2000  # frequencies of a sweep, and as many more near its resonances
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShakenBolt:
-    """Friction under the head of a bolt [-], and the curve of its fatigue; None where its size is not known."""
-
-    head_friction: float
-    fatigue: FatigueCurve | None
-
-
-@dataclass(frozen=True, kw_only=True)
 class Shaken:
     """A structure at its preload, ready to be shaken.
 
@@ -73,13 +66,8 @@ class Shaken:
     preload: PreloadState
     springs: Sequence[Springs[Any]]
     found: Vibration
-    bolts: Sequence[ShakenBolt]
+    bolts: Sequence[ServiceBolt]
     provenance: Provenance
-
-    @property
-    def head_friction(self) -> Array:
-        """Under the head of each bolt [-] (b,)."""
-        return np.array([bolt.head_friction for bolt in self.bolts])
 
     @property
     def forces(self) -> Array:
@@ -156,19 +144,11 @@ def _stress(structure: BoltedStructure) -> Array:
     turns = np.linspace(0, 2 * np.pi, ANGLES, endpoint=False)
     out = np.full((len(structure.bolts), ANGLES, 3), np.nan)
     for k, fitted in enumerate(structure.fitted_bolts):
-        area = _area(fitted)
-        if area is not None:
+        area = fatigue_area(fitted)
+        if area > 0:  # NaN where it is not known
             around = np.stack([np.cos(turns), np.sin(turns)], axis=1) / bending_modulus(area)
             out[k] = np.concatenate([np.full((ANGLES, 1), 1 / area), around], axis=1)
     return out
-
-
-def _area(fitted: Any) -> float | None:
-    """The area [m2] of a bolt that fatigue looks at: the stress area of its thread, or that of its shank."""
-    if not isinstance(fitted, FittedBolt) or fitted.bolt.diameter is None:
-        return None
-    thread = fitted.bolt.metric
-    return float(np.pi / 4 * fitted.bolt.diameter**2) if thread is None else float(thread.stress_area)
 
 
 def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> dict[str, Array]:
@@ -322,7 +302,7 @@ def _borne(
     left = np.maximum(base.forces - peak * axial, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         margin = mu * np.maximum(pressed - peak * normal, 0.0) / (peak * slip)
-        head = peak * across / (base.head_friction * left)
+        head = peak * across / (head_frictions(base.bolts) * left)
     return {
         "acceleration": each(_acceleration(excited, coordinates, amplitude, frequencies)),
         "velocity": each(2j * np.pi * frequencies * motion),
@@ -369,7 +349,6 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> V
         if patch.bolt < 0:
             same = [n for n, other in enumerate(excited.patches) if other.joint == patch.joint]
             margins[:, :, patch.joint] = found["margin"][:, k], found["margin"][:, same].min(axis=1)
-    moving = [bolt.guided_compliance if isinstance(bolt, FittedBolt) else np.nan for bolt in structure.fitted_bolts]
     levels, damping = _curves(sets.best, found["frequency"][1], found["level"][1], excited.greatest[elastic])
     return VibrationResponse(
         title=base.title,
@@ -390,7 +369,7 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> V
         points=structure.mesh.points[excited.nodes],
         line_frequency=given.lines,
         damage=found["damage"] * (np.nan if times is None else times),
-        slide_motion=base.head_friction * base.forces * np.array(moving),
+        slide_motion=np.array([bolt.slide_motion(f) for bolt, f in zip(base.bolts, base.forces.tolist(), strict=True)]),
         slip_margin=margins[0],
         slip_margin_worst=margins[1],
         curve_level=levels,

@@ -9,6 +9,7 @@ from faying.misuse import checked_call, shortened
 
 MAX_INCREMENTS = 1000  # of one case
 MAX_FACTOR = 1000.0  # on another case, either way
+MAX_CYCLES = 1e12  # a hundred years at 300 Hz
 COLDEST, WARMEST = -473.0, 2000.0  # K, change of temperature: from 200 degrees Celsius to absolute zero at most
 Vector = tuple[float, float, float]
 NOTHING: Vector = (0.0, 0.0, 0.0)
@@ -116,6 +117,8 @@ class Load:
         combine: Other cases by name, with the factor on what acts in them, -1000 to 1000; it acts here too.
         after: Case whose state this one starts from: its load gives way to that of this case. The preload where None.
         increments: Into how many parts the way to this load is cut, 1 to 1000; friction depends on the way.
+        cycles: How often this load comes and goes, from the state that it starts from, for the fatigue of the bolts; 0
+            or more.
 
     Raises:
         InputError: Nothing acts, or a value has no meaning.
@@ -130,6 +133,7 @@ class Load:
     combine: Mapping[str, float]
     after: str | None
     increments: int
+    cycles: float
 
     def __init__(
         self,
@@ -143,6 +147,7 @@ class Load:
         combine: Mapping[str, float] | None = None,
         after: str | None = None,
         increments: int = 4,
+        cycles: float = 0.0,
     ) -> None:
         what = f"load {name!r}"
         values = {
@@ -158,6 +163,7 @@ class Load:
             "combine": {key: number(factor, f"{what}: combine") for key, factor in (combine or {}).items()},
             "after": after,
             "increments": increments,
+            "cycles": number(cycles, f"{what}: cycles", least=0, greatest=MAX_CYCLES, ends="[]"),
         }
         for key, value in values.items():
             object.__setattr__(self, key, value)

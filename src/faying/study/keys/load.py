@@ -10,6 +10,7 @@ from faying.study.declaration.values import number, quantity
 from faying.study.keys.face import face_name, one_face
 from faying.study.load import (
     COLDEST,
+    MAX_CYCLES,
     MAX_FACTOR,
     MAX_INCREMENTS,
     NOTHING,
@@ -48,7 +49,7 @@ def _read(table: Table) -> Load | None:
     pressures = _on_faces(table, "pressure", Pressure)
     moves = _on_faces(table, "displacement", Displacement)
     acceleration = table.get("acceleration") or NOTHING
-    more = {key: table.get(key) for key in ("temperature", "combine", "after", "increments")}
+    more = {key: table.get(key) for key in ("temperature", "combine", "after", "increments", "cycles")}
     if name is None or None in forces or None in pressures or None in moves:
         return None
     return table.made(
@@ -159,5 +160,11 @@ LOAD: Declared = {
     ),
     "increments": Key.count(
         "Into how many parts the way to the load is cut where a joint has friction.", 4, most=MAX_INCREMENTS
+    ),
+    "cycles": Key.within(
+        0,
+        MAX_CYCLES,
+        "How often this load comes and goes, from the state that it starts from; fatigues the bolts.",
+        0.0,
     ),
 }

@@ -1,0 +1,60 @@
+"""What is known of each bolt that slip under its head and fatigue need."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from faying.bolt.bolt import Bolt, FittedBolt
+from faying.bolt.fatigue import FatigueCurve
+from faying.joint.bolted import BoltedStructure
+from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of
+from faying.study.study import Study
+from faying.typing import Array
+
+NAN = float("nan")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ServiceBolt:
+    """A bolt in service; NaN and None stand for what is not known.
+
+    Args:
+        head_friction: Coefficient under its head [-].
+        fatigue: Curve of its fatigue.
+        guided_compliance: Transverse motion of its head over the force across it [m/N].
+    """
+
+    head_friction: float
+    fatigue: FatigueCurve | None
+    guided_compliance: float
+
+    def slide_motion(self, force: float) -> float:
+        """Transverse motion of the head [m] at which it slides under a bolt force [N]."""
+        return self.head_friction * force * self.guided_compliance
+
+    def damage(self, amplitude: float, cycles: float) -> float:
+        """Damage [-] of cycles at an amplitude of stress [Pa]."""
+        return NAN if self.fatigue is None else self.fatigue.damage(np.array(amplitude), np.array(cycles))
+
+
+def service_bolts(structure: BoltedStructure, study: Study | None = None) -> tuple[ServiceBolt, ...]:
+    """The bolts of a structure; what a study says for the sheet of a bolt comes before its own friction."""
+    out = []
+    for fitted in structure.fitted_bolts:
+        bolt, friction, size, compliance = fitted.bolt, NAN, None, NAN
+        choice = BoltSheetChoice() if study is None else choice_of(study.bolt_sheets, bolt.name)
+        if isinstance(bolt, Bolt):
+            friction = NAN if bolt.friction is None else bolt.friction[1]
+            size = bolt.diameter if bolt.metric is None else bolt.metric.diameter
+        if isinstance(fitted, FittedBolt):
+            compliance = fitted.guided_compliance
+        friction = friction if choice.head_friction is None else choice.head_friction
+        curve = None if size is None else FatigueCurve.iec(size) if choice.fatigue == "iec" else FatigueCurve.vdi(size)
+        out.append(ServiceBolt(head_friction=friction, fatigue=curve, guided_compliance=compliance))
+    return tuple(out)
+
+
+def head_frictions(bolts: Sequence[ServiceBolt]) -> Array:
+    """Coefficient under each head [-] (b,); NaN where it is not known."""
+    return np.array([bolt.head_friction for bolt in bolts])
