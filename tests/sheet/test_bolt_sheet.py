@@ -420,12 +420,14 @@ def test_a_load_factor_below_0_is_explained_and_taken_as_it_is(made, monkeypatch
         introduction=-0.05,
         thermal_loss=None,
         thermal_gain=0.0,
+        damage=0.3,
     )
     monkeypatch.setattr(
         "faying.sheet.bolt_sheet.bolt_loads", lambda *_: {0: BoltLoad(least=found, mean=found, greatest=found)}
     )
     sheets = bolt_sheet(made())
     (sheet,) = sheets.sheets
+    assert (sheet.row("D").result.value, sheet.row("D").verdict) == (0.3, "ok")
     share = sheet.row("Phi").result.value
     assert share == pytest.approx(HAND["Phi"]({one.symbol: one.value for one in sheet.row("Phi").inputs}), rel=1e-12)
     assert share < 0

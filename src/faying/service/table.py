@@ -64,7 +64,6 @@ def bolt_rows(found: VibrationResponse) -> Rows:
     return in_columns(
         ("bolt", found.bolts, ""),
         ("force [N]", found.bolt_force[1], ".3g"),
-        ("M [N m]", found.bolt_moment[1], ".3g"),
         ("stress [MPa]", found.stress[1] / 1e6, ".3g"),
         ("5 to 95 %", _ends(found.stress / 1e6, ".3g"), ""),
         ("damage", found.damage[1], ".2g"),

@@ -416,10 +416,10 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> li
         low, middle, high = (f"{100 * one:g}" for one in sets.rest[:, 0])
         words.append(f"{middle} % at rest, between {low} and {high} %")
     if words:
-        out.append(Note(code="level-damping", text=f"damping under {what} assumes {' and '.join(words)}"))
+        out.append(Note(code="level-damping", text=f"damping in service assumes {' and '.join(words)}"))
     text = (
-        f"{what}: each mode has the damping of its own level; where two modes that shake one joint are strong "
-        "together, the joint slips more than either alone makes it"
+        "each mode has the damping of its own level; where two modes that shake one joint are strong together, the "
+        "joint slips more than either alone makes it"
     )
     out.append(Note(code="vibration-alone", text=text))
     return out

@@ -41,6 +41,7 @@ class AtPreload:
         introduction: n, that makes the load factor the one that was found under the greatest working load [-].
         thermal_loss: Greatest loss of preload by temperature [N]; None where no case changes a temperature.
         thermal_gain: Greatest gain of preload by temperature [N].
+        damage: By the cycles of all cases [-]; None where none has any.
     """
 
     axial: tuple[float, float]
@@ -50,6 +51,7 @@ class AtPreload:
     introduction: float
     thermal_loss: float | None
     thermal_gain: float
+    damage: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,6 +158,7 @@ def _at_preload(found: LoadCases, k: int, names: Sequence[str], share: float, pa
         introduction=float(factor),
         thermal_loss=max(float((-heat).max()), 0.0) + 0.0 if heated else None,
         thermal_gain=max(float(heat.max()), 0.0),
+        damage=float(found.damage[rows, k].sum()) if found.cycles[rows].any() else None,
     )
 
 

@@ -162,6 +162,7 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
             introduction=found.mean.introduction,
             thermal_loss=low.thermal_loss,
         )
+    damage = None if found is None else found.mean.damage
     known = {
         one.symbol: one
         for one in (
@@ -170,14 +171,26 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
             *_loads(case, index, choice, 0.0 if found is None else (found.greatest or found.mean).thermal_gain),
             *_compliances(numbers, index, choice),
             *_departures(float(numbers.load_factor[0, index]), choice, found),
+            *_cycles(damage),
             *_seats(case, index, numbers, force, choice),
         )
     }
     fastener, metric = bolt.fastener, _metric(bolt)
     size = "thread not known" if metric is None else f"{metric} {fastener.grade if fastener else '(no grade)'}"
     tapped = isinstance(fitted, FittedBolt) and fitted.thread is not None
-    rows = evaluate(steps(tapped=tapped, rolled_after=choice.rolled == "after"), known)
+    rolled_after = choice.rolled == "after"
+    rows = evaluate(steps(tapped=tapped, rolled_after=rolled_after, cycles=damage is not None), known)
     return BoltSheet(bolt=bolt.name, preload=force, size=size, rows=rows)
+
+
+def _cycles(damage: float | None) -> list[Quantity]:
+    """What load cases that come and go do to the bolt; nothing where none does."""
+    if damage is None:
+        return []
+    return [
+        _quantity("D_c", "damage by the cycles of load cases, bending included", "", damage, ""),
+        _quantity("D_1", "damage at failure", "", 1.0, ""),
+    ]
 
 
 def _departures(factor: float, choice: BoltSheetChoice, found: BoltLoad | None) -> list[Quantity]:

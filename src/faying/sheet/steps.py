@@ -219,6 +219,15 @@ STEPS = (
         limit="sigma_ASV",
     ),
     _step(
+        "R9",
+        "D [-]",
+        "damage by cycles",
+        "cycles over those to failure at the stress of force and bending, of all load cases (Palmgren, Miner)",
+        lambda D_c: D_c,
+        limit="D_1",
+        source=f"{GUIDELINE}, section 5.5.3",
+    ),
+    _step(
         "R10",
         "p_M [Pa]",
         "seat pressure at assembly",
@@ -303,17 +312,19 @@ STEPS = (
 )
 
 
-def steps(*, tapped: bool, rolled_after: bool) -> tuple[Step, ...]:
+def steps(*, tapped: bool, rolled_after: bool, cycles: bool = False) -> tuple[Step, ...]:
     """Return the steps, in the order of the guideline.
 
     Args:
         tapped: The bolt is screwed into a tapped hole; else it has a nut.
         rolled_after: Its thread is rolled after heat treatment, so that another endurance limit holds.
+        cycles: A load case says how often it comes and goes.
 
     Source:
         VDI 2230 Part 1:2015, section 4, for concentric clamping and loading.
     """
     others = ("F_nut" if tapped else "m_req", *(() if rolled_after else ("F_Sm", "sigma_ASG")))
+    others += () if cycles else ("D",)
     found = tuple(one for one in STEPS if one.symbol not in others)
     if not rolled_after:
         return found
