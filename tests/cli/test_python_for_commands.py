@@ -10,6 +10,7 @@ from click.testing import CliRunner
 
 import faying
 from faying.cli.main import COMMANDS, cli
+from faying.output.sections import sections
 from tests.helpers import studies
 
 ROOT = Path(__file__).parents[2]
@@ -113,6 +114,15 @@ def test_a_joint_in_a_model(tmp_path):
         assert file.read_bytes() == (tmp_path / "command" / file.name).read_bytes()
 
 
+SHAKEN = """
+[[vibration]]
+name = "noise"
+psd = [["20 Hz", "+3 dB/oct"], ["80 Hz", "0.001 N^2/Hz"], ["2 kHz", "0.001 N^2/Hz"]]
+point = ["40 mm", "15 mm", "15 mm"]
+duration = "1 min"
+"""
+
+
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
     """Two blocks, quick to solve."""
@@ -158,3 +168,18 @@ def test_a_report(small, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(faying.InputError, match="a file has this name"):
         faying.write_report(result, tmp_path / "file")
+
+
+def test_vibration_in_service(small, tmp_path):
+    """The command prints what the result of a run has; faying.load reads what it saves."""
+    text = small.read_text() + SHAKEN
+    study = tmp_path / "shaken.toml"
+    for file in small.parent.iterdir():
+        if file.is_file() and file != small:
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    study.write_text(text)
+    result = faying.run(study)
+    printed = call("vibration", study, "--json", "--out", tmp_path / "v.nc")
+    assert plain([one.to_dict() for one in result.vibrations]) == printed["vibrations"]
+    assert plain(faying.load(tmp_path / "v-1.nc").to_dict()) == printed["vibrations"][0]
+    assert any(section.name == "vibration" for section in sections(result))

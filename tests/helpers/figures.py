@@ -33,7 +33,7 @@ from faying.measured.modes import ModeSet
 from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
-from faying.result import Receptance, backbone, difference_figure
+from faying.result import Receptance, backbone, difference_figure, vibration
 from faying.result.backbone import QuasiStaticCheck
 from faying.result.difference import compare_runs
 from faying.result.interval import Interval
@@ -155,6 +155,7 @@ def result():
         bonded=1.02 * f[-1],
         low=0.97 * f,
         high=1.01 * f,
+        vibrations=tuple(shaken(load) for load in (5e3, 8e3)),
         interval_best=interval.best,
         interval_low=interval.low,
         interval_high=interval.high,
@@ -342,6 +343,51 @@ def laws():
     return law_curves(mates.comparison(None, None).responses)
 
 
+def shaken(load=8e3, name="shaker"):
+    """A structure on a shaker: two points, ten modes, four bolts, one of which lasts for ever."""
+    f, modes = np.geomspace(20, 2000, 60), 40.0 * 1.5 ** np.arange(10)
+    three = np.array([0.6, 1.0, 1.8])
+    level = three[:, None] * 30 / np.arange(1, 11)
+    peak = 0.4 + 30 / (1 + ((f - 300) / 20) ** 2)
+    return faying.VibrationResponse(
+        title="bracket",
+        name=name,
+        kind="random",
+        unit="(m/s^2)^2/Hz",
+        preload=load,
+        base=1,
+        times=1800.0,
+        bolts=("left", "right"),
+        joints=("foot",),
+        direction=np.array([1.0, 0, 0]),
+        input_frequency=np.array([20.0, 2000]),
+        input_value=np.array([3.8, 3.8]),
+        rest_frequency=modes,
+        rest_damping=np.outer([3e-4, 1.6e-3, 9e-3], np.ones(10)),
+        share=0.1 + 0 * modes,
+        frequency=np.outer(np.ones(3), modes),
+        damping=np.outer(three, 2e-3 + 0 * modes),
+        level=level,
+        curve_level=level[1][:, None] * np.geomspace(0.05, 3, 15),
+        curve_damping=np.outer(1 + np.arange(10), np.geomspace(1e-3, 4e-3, 15)),
+        points=np.array([[0.0, 0, 0.1], [0.1, 0, 0]]),
+        acceleration=np.multiply.outer(three, np.ones((2, 3))),
+        velocity=np.multiply.outer(three, np.ones((2, 3))),
+        displacement=np.multiply.outer(three, 1e-5 * np.ones((2, 3))),
+        line_frequency=f,
+        curve=3.8 * np.multiply.outer(three, np.stack([peak, 0.5 * peak])),
+        bolt_force=np.outer(three, [50.0, 60]),
+        bolt_moment=np.outer(three, [0.5, 0.6]),
+        bolt_shear=np.outer(three, [10.0, 20]),
+        stress=np.outer(three, [2e7, 3e7]),
+        damage=np.outer(three**3, [0.0, 0.02 * (8e3 / load) ** 2]),
+        head_motion=np.outer(three, [0.1, 0.2]),
+        slide_motion=np.array([1e-4, 1e-4]),
+        slip_margin=np.array([[0.9], [1.3], [1.9]]),
+        slip_margin_worst=np.array([[0.8], [1.2], [1.8]]),
+    )
+
+
 def level_curves():
     """Ten modes that soften with their level, as `faying backbone --quick` has them."""
     levels, mode = np.geomspace(0.1, 100, 19)[:, None], np.arange(1, 13)
@@ -369,6 +415,10 @@ FIGURES = {
     "result/backbone.py:figure": two_curves,
     "result/backbone.py:backbone_axes": lambda: whole(curve().plot()),
     "result/backbone.py:measured": lambda: backbone.measured(measured_points()),
+    "result/vibration.py:plot": lambda: whole(shaken().plot()),
+    "result/vibration.py:life_figure": lambda: vibration.life_figure(
+        [shaken(load, name) for load in (5e3, 8e3) for name in ("shaker", "transport by road")]
+    ),
     "answer/level_curves.py:plot": lambda: whole(level_curves().plot()),
     "result/difference_figure.py:differences": lambda: difference_figure.differences(
         compare_runs(result(), two_boxes(names=("flange_1",)))

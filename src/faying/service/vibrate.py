@@ -400,9 +400,12 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> li
             "answers as at rest; raise modes.count"
         )
         out.append(Note(code="vibration-band", text=text))
-    if sets.ended:
+    reached = CURVE_REACH[excitation.kind] * found["level"][1] / (2 * np.pi * found["frequency"][1]) ** 2
+    amplitudes = reached / given.excited.greatest[given.excited.rigid :]
+    ended = [k for k in sets.ended if amplitudes[k - 1] > sets.best[k - 1].amplitudes.max(initial=0.0)]
+    if ended:
         text = (
-            f"{what}: friction does not hold the joints against mode {', '.join(map(str, sets.ended))} at the level "
+            f"{what}: friction does not hold the joints against mode {', '.join(map(str, ended))} at the level "
             "that is reached; beyond the end of its curve frequency and damping stay"
         )
         out.append(Note(code="no-level-answer", text=text))
