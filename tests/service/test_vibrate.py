@@ -9,6 +9,7 @@ from scipy.integrate import quad
 from scipy.linalg import eigh, solve
 
 import faying
+from faying.fe.stress import part_stresses
 from faying.joint.attachments import Support
 from faying.service.excited import Excited
 from tests.helpers.bars import SIMPLE, bars
@@ -107,6 +108,26 @@ def test_far_below_the_first_mode_everything_is_the_load_case_of_an_acceleration
     assert found.head_motion[1] == pytest.approx(3 * static.bolt_shear[0] / (0.12 * PRELOAD), rel=1e-4)
     assert found.slip_margin[1] == pytest.approx(static.slip_margin[0] / 3, rel=2e-2)  # 3 sigma also lifts the joint
     assert found.acceleration[1, :, 2] == pytest.approx(rms, rel=1e-4)
+
+
+def test_stress_of_the_parts_is_that_of_the_load_case_far_below_the_first_mode(state):
+    band = (0.5, 0.002 * state.frequencies[0])
+    (found,) = faying.vibration(state, [noise(1e-4, band, direction=(0, 0, 1))])
+    rms = np.sqrt(1e-4 * (band[1] - band[0]))
+    rest = part_stresses(state.structure.mesh, dict.fromkeys(("p0", "p1"), SIMPLE), state.preload.displacement[:, None])
+    case = faying.Load("pull", acceleration=(0, 0, rms))
+    static = faying.load_cases(state, loads=[case], modes=False)
+    assert static.parts == found.parts == ("p0", "p1")
+    # the static stress has that of the preload, which bends nothing: the vibration alone is far less
+    assert np.all(static.stress[0] > 100 * found.part_stress[1])
+    assert static.stress[0] == pytest.approx([one.von_mises.max() for one in rest.values()], rel=1e-2)
+    motion = Excited.of(state.structure, state.springs, state.vibration, noise(1e-4, band, direction=(0, 0, 1)))
+    at_rest = np.append(motion.force / motion.speeds**2, 1.0)  # under 1 m/s2
+    sizes = [one.max() for one in motion.part_stress(np.outer(at_rest, at_rest))]
+    assert found.part_stress[1] == pytest.approx(rms * np.array(sizes), rel=1e-4)
+    # p0 is a cantilever: sigma = 6 M/b^3 at its root with M of the mass of both, half of it sheared by the mesh
+    exact = 6 * SIMPLE.density * 0.02**2 * 0.06**2 / 2 / 0.02**3 * rms
+    assert found.part_stress[1, 0] == pytest.approx(exact, rel=0.35)
 
 
 def test_the_head_slides_at_the_deflection_of_a_guided_cantilever():

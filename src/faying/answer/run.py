@@ -24,6 +24,7 @@ from faying.case.provenance import provenance
 from faying.case.scatter import IN_INTERVALS
 from faying.case.solve import LoadedCase, released, solve
 from faying.errors import InputError, NotConverged
+from faying.fe.stress import at_outline, greatest_stresses, part_stresses
 from faying.joint.structure import Structure
 from faying.misuse import checked_call
 from faying.mpi.over_mpi import OverMpi
@@ -192,6 +193,7 @@ def collect(
         **_outline(structure, shapes, states),
         **_made_of(structure),
         **_dowels(structure, states),
+        **_stress(structure, states),
         **alternative_fields(alternatives, len(states), study.modes.count),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
@@ -309,6 +311,20 @@ def _dowels(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any
         "dowel_ends": np.array([one.seats for one in fitted]),
         "dowel_diameters": np.array([one.place.diameter for one in fitted]),
         "dowel_shear": np.array([[one.shear(s.preload.displacement) for one in fitted] for s in states]),
+    }
+
+
+def _stress(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any]:
+    """Fields of the result that say what the preload does to the parts."""
+    moved = np.stack([s.preload.displacement for s in states], axis=1)
+    found = part_stresses(structure.mesh, structure.materials, moved)
+    size, place, spread = greatest_stresses(found, structure.mesh.points)
+    outer = at_outline(found, len(structure.mesh.points), structure.surface().nodes)
+    return {
+        "stress": size.T,
+        "stress_place": np.moveaxis(place, 2, 0),
+        "stress_spread": spread.T,
+        "von_mises": outer.T.astype("f4"),
     }
 
 

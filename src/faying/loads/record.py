@@ -113,6 +113,14 @@ class LoadCases(Recorded):
     dowel_bearing: Array | None = optional(
         "case dowel", "Pa", "greatest force on a wall by the load over diameter and depth of its hole", "dowels/"
     )
+    parts: tuple[str, ...] = ()
+    stress: Array | None = optional(
+        "case part", "Pa", "greatest stress of von Mises in each part, with the preload", "parts/"
+    )
+    stress_place: Array | None = optional("case part axis", "m", "where it is", "parts/")
+    stress_spread: Array | None = optional(
+        "case part", "1", "deviation of the elements at this place from their mean, over the stress", "parts/"
+    )
     normal_force: Array = variable("case joint", "N", "normal force on the joint", "joints/")
     normal_preload: Array = variable("joint", "N", "normal force on the joint before any load", "joints/")
     friction: Array = variable("joint", "1", "coefficient of friction", "joints/", gaps=True)
@@ -182,6 +190,7 @@ class LoadCases(Recorded):
             "bolt": self.bolts,
             "joint": self.joints,
             "axis": ("x", "y", "z"),
+            **({"part": self.parts} if self.parts else {}),
             **dowels,
             **modes,
         }
@@ -219,6 +228,7 @@ class LoadCases(Recorded):
             "bolts": list(self.bolts),
             "joints": list(self.joints),
             "dowels": list(self.dowels),
+            "parts": list(self.parts),
             **in_units(self, without=MAPS),
             **{name: {"unit": "1", "values": listed(one)} for name, one in finite.items()},
             "intervals": None

@@ -1,6 +1,6 @@
 """Load cases on a preloaded structure: bolts, opening, slip, modes about the loaded state."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -12,6 +12,7 @@ from faying.case.engine import Engine, engine_of
 from faying.case.provenance import provenance
 from faying.case.service_bolts import ServiceBolt, head_frictions, service_bolts
 from faying.errors import InputError
+from faying.fe.stress import greatest_stresses, part_stresses
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.load_path import LoadPaths
@@ -240,6 +241,7 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         pressure=np.array([np.concatenate(one) for one in pressures]),
         shear=np.array(shears),
         **_dowels(structure, motions),
+        **_stress(structure, base.preload.displacement, motions, [acts[load.name].strains for load in loads]),
         notes=(*base.notes, *load_notes(structure, contacts, [load.name for load in loads], pressures, arrays)),
         provenance=base.provenance,
         cycles=np.array([load.cycles for load in loads]),
@@ -291,6 +293,19 @@ def _dowels(structure: BoltedStructure, motions: Sequence[Array]) -> dict[str, A
         "dowel_shear": np.array([[one.shear(motion) for one in fitted] for motion in motions]),
         "dowel_bearing": np.array([[one.bearing(motion) for one in fitted] for motion in motions]),
     }
+
+
+def _stress(
+    structure: BoltedStructure, rest: Array, motions: Sequence[Array], strains: Sequence[Mapping[str, float]]
+) -> dict[str, Any]:
+    """The greatest stress of each part under the preload and the motion [m] of each case, with its heat."""
+    mesh = structure.mesh
+    every = [
+        greatest_stresses(part_stresses(mesh, structure.materials, (rest + one)[:, None], free), mesh.points)
+        for one, free in zip(motions, strains, strict=True)
+    ]
+    size, place, spread = (np.stack([one[k][..., 0] for one in every]) for k in range(3))
+    return {"parts": tuple(mesh.parts), "stress": size, "stress_place": place, "stress_spread": spread}
 
 
 def _greatest(motion: Array) -> float:

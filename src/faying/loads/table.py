@@ -10,11 +10,12 @@ from faying.output.table import Rows, text
 from faying.output.terminal import wrapped
 from faying.text import in_columns
 from faying.typing import Array
-from faying.units import show
+from faying.units import in_mm, show
 
 WIDTH = 80
 CASES_IN_TABLE = 3  # cases in one table of frequencies
 MAX_MODES = 10  # that the table of frequencies has
+PARTS = "greatest stress of von Mises in each part, and how far elements differ there"
 SERVICE = "bolts in service: alternating stress, damage, and motion of the head over that at which it slides"
 SCOPE = (
     "Forces in N where no unit is given, moments in N m, pressures in MPa. F_A: load that pulls the parts apart at a "
@@ -36,6 +37,8 @@ def terminal(found: LoadCases) -> str:
     for first in range(0, len(found.cases), CASES_IN_TABLE):
         modes = mode_rows(found, slice(first, first + CASES_IN_TABLE))
         lines += ["frequency under each load [Hz], and its change", text(modes), ""] if modes else []
+    parts = part_rows(found)
+    lines += [PARTS, text(parts, left=(0, 1)), ""] if parts else []
     service = service_rows(found)
     lines += [*wrapped(SERVICE), text(service, left=(0, 1)), ""] if service else []
     lines += interval_lines(found)
@@ -85,6 +88,19 @@ def joint_rows(found: LoadCases, k: int) -> Rows:
         ("margin", map(margin, found.slip_margin[k]), ""),
         ("worst", map(margin, found.slip_margin_worst[k]), ""),
     )
+
+
+def part_rows(found: LoadCases) -> Rows:
+    """One row for each case: the part with the greatest stress, and its place."""
+    if found.stress is None or found.stress_place is None or found.stress_spread is None:
+        return []
+    rows: Rows = [["load", "part", "stress [MPa]", "+- [%]", "at [mm]"]]
+    for k, name in enumerate(found.cases):
+        p = int(np.argmax(found.stress[k]))
+        cells = [_short(found.stress[k, p] / 1e6), f"{100 * found.stress_spread[k, p]:.2g}"]
+        place = in_mm(found.stress_place[k, p]).removesuffix(" mm")
+        rows.append([_cut(name, 18), _cut(found.parts[p], 14), *cells, place])
+    return rows
 
 
 def service_rows(found: LoadCases) -> Rows:

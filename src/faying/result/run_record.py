@@ -167,6 +167,27 @@ class RunRecord(Recorded):
     part_masses: Array | None = optional(
         "part", "kg", "mass of each part, without bolts and point masses", "parts/mass"
     )
+    stress: Array | None = optional(
+        "load part",
+        "Pa",
+        "greatest stress of von Mises in each part when all bolts are tight",
+        "parts/",
+        shown=ShownAs(
+            chapter="Structure",
+            title="Stress of the parts",
+            line="greatest stress of von Mises in each part when all bolts are tight",
+            below="The greatest stress of von Mises in each part when all bolts are tight, at nodes, averaged over the "
+            "elements there. stress_place says where, stress_spread how far elements differ there. Under a sharp edge "
+            "and where a bolt is a beam it grows as the mesh gets finer.",
+        ),
+    )
+    stress_place: Array | None = optional("load part axis", "m", "where the stress of each part is greatest", "parts/")
+    stress_spread: Array | None = optional(
+        "load part", "1", "deviation of the elements at this place from their mean, over the stress", "parts/"
+    )
+    von_mises: Array | None = optional(
+        "load node", "Pa", "stress of von Mises on the outer surface", "surface/", dtype="f4"
+    )
     slip: Array | None = optional(
         "load point", "m", "tangential displacement of the second face against the first under the preload", "points/"
     )

@@ -74,6 +74,9 @@ class VibrationResponse(Recorded):
     head_motion: Array = variable(
         "estimate bolt", "1", "transverse motion of the head over that at which it slides", "bolts/", gaps=True
     )
+    parts: tuple[str, ...]
+    part_stress: Array = variable("estimate part", "Pa", "greatest stress of von Mises in each part", "parts/stress")
+    part_stress_place: Array = variable("part axis", "m", "where it is", "parts/")
     slide_motion: Array = variable("bolt", "m", "transverse motion of the head at which it slides", "bolts/", gaps=True)
     slip_margin: Array = variable(
         "estimate joint", "1", "friction over shear and torque of all of the joint", "joints/", gaps=True
@@ -102,6 +105,7 @@ class VibrationResponse(Recorded):
             "mode": np.arange(1, len(self.rest_frequency) + 1),
             "bolt": self.bolts,
             "joint": self.joints,
+            "part": self.parts,
             "axis": ("x", "y", "z"),
         }
 
@@ -128,6 +132,7 @@ class VibrationResponse(Recorded):
             "base": bool(self.base),
             "bolts": list(self.bolts),
             "joints": list(self.joints),
+            "parts": list(self.parts),
             "estimates": list(ESTIMATES),
             **in_units(self, without=("line", "sample")),
             **{name: {"unit": "1", "values": values} for name, values in finite.items()},

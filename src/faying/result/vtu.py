@@ -62,6 +62,8 @@ def _grid(result: RunRecord, maps: list[Any], load: int) -> str:
         points[f"mode {mode + 1} real"] = moved(result.shapes[load, mode])
         if result.shapes_imaginary is not None:
             points[f"mode {mode + 1} imaginary"] = moved(result.shapes_imaginary[load, mode])
+    if result.von_mises is not None:
+        points["von Mises stress [Pa]"] = moved(result.von_mises[load])
     for name in UNITS:
         if any(name in one.fields for _, one in found):
             values = [one.fields.get(name, np.full((1, len(one.parents)), np.nan)) for _, one in found]

@@ -13,6 +13,7 @@ import numpy as np
 from faying.case.acting import nodal_force
 from faying.errors import InputError
 from faying.fe.sides import nodes_of
+from faying.fe.stress import SQUARE, PartStress, part_stresses
 from faying.joint.attachments import nearest_node
 from faying.joint.bolted import BoltedStructure
 from faying.joint.carried import PressedPatch
@@ -53,6 +54,7 @@ class Excited:
         greatest: Displacement of the node that moves most in each mode (m,) [kg^-1/2].
         mass: That moves with the supports [kg]; 1 where a force acts.
         patches: Points of the joints whose slip is asked for.
+        stress: Of each part, with a column for each mode and the last for what they lack.
     """
 
     excitation: Excitation
@@ -65,6 +67,7 @@ class Excited:
     greatest: Array
     mass: float
     patches: tuple[Patch, ...]
+    stress: Mapping[str, PartStress]
 
     @classmethod
     def of(
@@ -100,7 +103,15 @@ class Excited:
             if excitation.base
             else 1.0,
             patches=patches,
+            stress=part_stresses(structure.mesh, structure.materials, columns),
         )
+
+    def part_stress(self, products: Array) -> list[Array]:
+        """Von Mises' stress [Pa] at the nodes of each part, from products (m + 1, m + 1) of coordinates and input."""
+        return [
+            np.sqrt(np.maximum(np.einsum("nik,ij,njl,kl->n", s, SQUARE, s, products, optimize=True), 0.0))
+            for s in (one.stress for one in self.stress.values())
+        ]
 
     def transfer(self, name: str, coordinates: Complex, amplitude: Array | float = 1.0) -> Complex:
         """A quantity (..., n) from the coordinates (m, n) of all modes under an input of amplitudes (n,)."""

@@ -11,7 +11,7 @@ from faying.units import GRAVITY, in_mm, load_text
 
 Rows = list[list[str]]
 SHOWN = 0.01  # of the greatest level: modes below it have no row,
-NEAR = 1.2  # nor those farther from the band than by this factor, where others are nearer
+NEAR_BAND = 1.2  # nor those farther from the band than by this factor, where others are nearer
 HELP = (
     "Values are rms of random vibration (heads and margins at 3 sigma), amplitudes of a sweep. Level: acceleration "
     "where a mode moves most, of it alone. Head: transverse motion over that at which the head slides; above 1 a bolt "
@@ -35,7 +35,7 @@ def mode_rows(found: VibrationResponse) -> Rows:
     """One row for each mode that is shaken: level, frequency and damping that it reaches, with their ends."""
     strong = found.level[1] > SHOWN * found.level[1].max()
     first, last = found.input_frequency[[0, -1]]
-    near = strong & (found.rest_frequency * NEAR > first) & (found.rest_frequency < NEAR * last)
+    near = strong & (found.rest_frequency * NEAR_BAND > first) & (found.rest_frequency < NEAR_BAND * last)
     some = np.flatnonzero(near if near.any() else strong)
     return in_columns(
         ("mode", some + 1, "d"),
@@ -96,11 +96,22 @@ def joint_rows(found: VibrationResponse) -> Rows:
     )
 
 
+def part_rows(found: VibrationResponse) -> Rows:
+    """One row for each part: its greatest stress of von Mises, and the place."""
+    return in_columns(
+        ("part", found.parts, ""),
+        ("stress [MPa]", found.part_stress[1] / 1e6, ".3g"),
+        ("5 to 95 %", _ends(found.part_stress / 1e6, ".3g"), ""),
+        ("at [mm]", [in_mm(one).removesuffix(" mm") for one in found.part_stress_place], ""),
+    )
+
+
 TABLES: dict[str, Any] = {
     "modes that are shaken": mode_rows,
     "points": point_rows,
     "bolts": bolt_rows,
     "margin of slip": joint_rows,
+    "greatest stress of von Mises in the parts": part_rows,
 }
 
 

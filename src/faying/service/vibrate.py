@@ -44,6 +44,7 @@ ANSWERS = (
     "bolt_moment",
     "bolt_shear",
     "stress",
+    "part_stress",
     "head_motion",
     "curve",
 )
@@ -104,7 +105,8 @@ def vibrate(base: Shaken, excitation: Excitation) -> VibrationResponse:
     ends = [(answer(sets.at_rest(0), FRICTION[1]), answer(sets.at_rest(2), FRICTION[1]))]
     if sets.least is not None and sets.most is not None:
         ends.append((answer(sets.least, FRICTION[0]), answer(sets.most, FRICTION[2])))
-    return _record(given, sets, _with_ends(best, ends))
+    place = best.pop("part_place")
+    return _record(given, sets, _with_ends(best, ends), place)
 
 
 def _needed(excitation: Excitation, force: float, curve: ModeCurve) -> float:
@@ -180,9 +182,18 @@ def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> 
     out["damage"] = np.array(
         [_most_damage(bolt.fatigue, some) for bolt, some in zip(given.base.bolts, every, strict=True)]
     )
+    full = np.concatenate([coordinates, np.ones((1, len(frequencies)))])
+    out["part_stress"], out["part_place"] = _worst_stress(given, products(full))
     lines = _coordinates(excited, speeds, dampings, given.lines)
     out["curve"] = np.abs(_along(excited, lines, 1.0, given.lines)) ** 2 * table.at(given.lines)
     return out
+
+
+def _worst_stress(given: _Answering, products: Array) -> tuple[Array, Array]:
+    """The greatest stress of von Mises in each part (p,) [Pa], and its place (p, 3) [m]."""
+    stress, points = given.excited.part_stress(products), given.base.structure.mesh.points
+    nodes = [one.nodes[int(np.argmax(s))] for one, s in zip(given.excited.stress.values(), stress, strict=True)]
+    return np.array([one.max() for one in stress]), points[nodes]
 
 
 def _most_damage(curve: FatigueCurve | None, moments: Array) -> float:
@@ -235,6 +246,10 @@ def _sine(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> di
     out["damage"] = np.array(
         [_swept_damage(bolt.fatigue, some, frequencies) for bolt, some in zip(given.base.bolts, flat, strict=True)]
     )
+    energy = np.sum(np.abs(excited.speeds[:, None] * coordinates) ** 2, axis=0)
+    most = int(np.argmax(energy))  # where the most energy is
+    full = np.append(coordinates[:, most], amplitude[most])
+    out["part_stress"], out["part_place"] = _worst_stress(given, np.real(np.outer(full, full.conj())))
     along = np.abs(_along(excited, coordinates, amplitude, frequencies))
     out["curve"] = np.stack([np.interp(given.lines, frequencies, one) for one in along])
     return out
@@ -339,7 +354,7 @@ def _with_ends(
     return out
 
 
-def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> VibrationResponse:
+def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], place: Array) -> VibrationResponse:
     """The answers with what they belong to."""
     base, excited, structure = given.base, given.excited, given.base.structure
     excitation, elastic = excited.excitation, slice(excited.rigid, None)
@@ -360,6 +375,8 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> V
         times=float("nan") if times is None else float(times),
         bolts=tuple(bolt.name for bolt in structure.bolts),
         joints=tuple(joint.name for joint in structure.joints),
+        parts=tuple(structure.mesh.parts),
+        part_stress_place=place,
         direction=_direction(excited),
         input_frequency=excitation.table.frequencies,
         input_value=excitation.table.values,
