@@ -213,12 +213,6 @@ def test_the_corners_lead_to_the_same_equilibrium_in_fewer_steps():
     found, wanted = (problem.solve(face_pair(structure, 4e3)) for problem in (helped, alone))
     assert found.pressures[0] == pytest.approx(wanted.pressures[0], abs=1e-8 * wanted.pressures[0].max())
     assert found.inner_steps < 0.7 * wanted.inner_steps
-    assert alone.factorised_springs is None
-    [(k_n, _)] = helped.factorised_springs
-    exact = structure.springs(found.pressures)[0].k_n
-    assert np.mean((k_n > 0) == (exact > 0)) > 0.85
-    both = (k_n > 0) & (exact > 0)
-    assert np.median(np.abs(np.log(k_n[both] / exact[both]))) < 0.3
 
 
 @pytest.mark.parametrize("fault", [faying.NotConverged, faying.InputError])
@@ -235,5 +229,4 @@ def test_where_the_corners_find_no_equilibrium_the_joint_begins_evenly(fault, mo
     monkeypatch.setattr(Equilibrium, "solve", fails)
     problem = structure.assembly()
     found = problem.solve(face_pair(structure, 4e3))
-    assert problem.factorised_springs is None
     assert found.pressures[0] == pytest.approx(wanted.pressures[0], abs=1e-8 * wanted.pressures[0].max())

@@ -125,13 +125,6 @@ class AssembledParts:
         given = [one @ acceleration for one in more if one is not None]
         return np.asarray(sum(given, self.matrices[1] @ acceleration))
 
-    @property
-    def is_parts_only(self) -> bool:
-        """Whether parts and supports are all that vibrates: bolts, dowels and masses add nothing."""
-        if self.masses or self.dowels:
-            return False
-        return all(b.stiffness is None and b.released is None and b.mass is None for b in self.fitted_bolts)
-
     @cached_property
     def rigid(self) -> Array:
         """Rigid motions of the whole that no support resists (unknowns, up to 6)."""

@@ -198,11 +198,6 @@ class BoltedStructure(Summary):
         return self._assembled.inertia(acceleration)
 
     @property
-    def is_parts_only(self) -> bool:
-        """Whether the parts under preload are all that vibrates: no bolt or dowel adds a stiffness or a mass."""
-        return self._assembled.is_parts_only
-
-    @property
     def rigid(self) -> Array:
         """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
         return self._assembled.rigid

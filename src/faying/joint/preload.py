@@ -6,7 +6,7 @@ solutions (multigrid over MPI), each Newton step takes its own.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -33,11 +33,7 @@ ROUGH = 1e-2  # accuracy of the start of Newton's iteration where it is found by
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
 
 
-class Guess(NamedTuple):
-    """Where the joints are likely to end up: opening [m] and pressure [Pa] at the points of each; whether near it."""
-
-    joints: tuple[tuple[Array, Array], ...]
-    near: bool
+Guess = tuple[tuple[Array, Array], ...]  # opening [m] and pressure [Pa] at the points of each joint
 
 
 class PreloadProblem(Equilibrium):
@@ -45,8 +41,7 @@ class PreloadProblem(Equilibrium):
 
     fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do;
     vertices: those of the mesh, for whoever has one to set: their own equilibrium says which springs to factorise with;
-    without them, springs at one pressure for each joint. sprung: springs per area (k_n, k_t) [Pa/m] of each joint in
-    the factorisation at hand, where they are near to those under the load; None where they are not.
+    without them, springs at one pressure for each joint.
     """
 
     def __init__(
@@ -71,7 +66,6 @@ class PreloadProblem(Equilibrium):
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
         self.vertices: VertexRestriction | None = None
         self.factor: Factorisation | None = None
-        self.factorised_springs: list[tuple[Array, Array]] | None = None
         self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation
         self._scale = 1.0
 
@@ -82,7 +76,7 @@ class PreloadProblem(Equilibrium):
         factorisation less is held. One that was shifted further, by this frequency [Hz], is left.
         """
         if shift_frequency <= self.shift_frequency:
-            self.factor, self.factorised_springs, self._rate = factor, None, 0.0
+            self.factor, self._rate = factor, 0.0
 
     def _check_load(self, load: Array) -> None:
         self._scale = float(np.linalg.norm(load))
@@ -90,11 +84,9 @@ class PreloadProblem(Equilibrium):
 
     def _start(self, load: Array) -> Array:
         """Displacement under springs that are tangent to p(approach) where the joints are likely to end up."""
-        guess = self._guess(load)
-        laid, springs, push = [], [], load
-        for (joint, law), (opening, pressure) in zip(self.joints, guess.joints, strict=True):
+        springs, push = [], load
+        for (joint, law), (opening, pressure) in zip(self.joints, self._guess(load), strict=True):
             k_n, k_t = law.stiffness(pressure)
-            laid.append((k_n, k_t))
             springs.append(joint.springs(k_n, k_t))
             offset = np.where(pressure > 0, pressure + k_n * (opening - joint.gap), 0.0)
             push = push + joint.forces(offset, np.zeros((len(offset), 2)))
@@ -109,7 +101,7 @@ class PreloadProblem(Equilibrium):
             found, count = self._gradients(product, push, ROUGH, limit=limit)
             if count < limit:
                 return found
-        self._factorise(springs, laid if guess.near else None)
+        self._factorise(springs)
         return self._near(push)
 
     def _guess(self, load: Array) -> Guess:
@@ -135,7 +127,7 @@ class PreloadProblem(Equilibrium):
             found = coarse.solve(coarse._admissible(spread.T @ load), tolerance=GUESSED)
         except (NotConverged, InputError):
             return self._uniform_guess(load)
-        return Guess(tuple(zip(found.openings, found.pressures, strict=True)), near=True)
+        return tuple(zip(found.openings, found.pressures, strict=True))
 
     def _uniform_guess(self, load: Array) -> Guess:
         """Every joint at the mean pressure that the load would give it."""
@@ -143,15 +135,15 @@ class PreloadProblem(Equilibrium):
         for joint, law in self.joints:
             mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
             joints.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
-        return Guess(tuple(joints), near=False)
+        return tuple(joints)
 
-    def _factorise(self, springs: list[Any], factorised_springs: list[tuple[Array, Array]] | None) -> None:
+    def _factorise(self, springs: list[Any]) -> None:
         self.factor = None  # one at a time in memory
         stiffness = sum(springs, self.stiffness)
         near = Shifted(stiffness=constrain(stiffness, self.fixed), mass=self._mass, shift=self._shift)
         self.factor = factorise_roughly(near, rigid=self._rigid, solver=self.solver)
         self.factorisations += 1
-        self.factorised_springs, self._rate = factorised_springs, 0.0
+        self._rate = 0.0
 
     def _clear_fixed(self, force: Array) -> Array:
         """A force with nothing on the unknowns that supports fix."""
@@ -195,11 +187,11 @@ class PreloadProblem(Equilibrium):
         return bool(LATE < left < EARLY and self._rate > SLOW)
 
     def _renew(self, tangents: list[tuple[Any, Array, Array]]) -> None:
-        laid = []
+        springs = []
         for joint, k_n, k_t in tangents:
             shear = np.trace(k_t, axis1=1, axis2=2) / 2
-            laid.append((k_n / joint.weights, shear / joint.weights))
-        self._factorise([joint.springs(*k) for (joint, _), k in zip(self.joints, laid, strict=True)], laid)
+            springs.append(joint.springs(k_n / joint.weights, shear / joint.weights))
+        self._factorise(springs)
 
     def _gradients(self, product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = AGED) -> Step:
         """Conjugate gradients: the solution and how many steps it took, `limit` where that was not enough."""
