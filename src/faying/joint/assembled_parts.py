@@ -14,7 +14,6 @@ from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.mesh import Mesh
 from faying.fe.sides import nodes_of
 from faying.fe.tied import tie_stiffness
-from faying.fe.vertices import VertexRestriction
 from faying.joint.attachments import PointMass, Support
 from faying.memory import available
 from faying.mpi.over_mpi import OverMpi, processes_named
@@ -54,11 +53,6 @@ class AssembledParts:
         """Stiffness [N/m] that ties two faces which meet, whether or not their nodes match; see `tie_stiffness`."""
         modulus = max(self.materials[self.mesh.face_part[face]].E for face in faces)
         return tie_stiffness(self.mesh, faces, modulus)
-
-    @cached_property
-    def vertices(self) -> VertexRestriction | None:
-        """The corners of the elements; None where every node is one."""
-        return VertexRestriction.of(self.mesh)
 
     @cached_property
     def fixed(self) -> Index:

@@ -305,20 +305,16 @@ class BoltedStructure(Summary):
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
         pairs = [(joint.interface, joint.law) for joint in self.joints]
-        way = self.solver(solver)
-        problem = PreloadProblem(
+        return PreloadProblem(
             self.supported_stiffness,
             self.matrices[1],
             self.rigid,
             pairs,
             shift_frequency=self.shift_frequency,
-            solver=way,
+            solver=self.solver(solver),
             friction=[joint.friction for joint in self.joints],
             fixed=self.fixed,
         )
-        if not (isinstance(way, Factoriser) and way.cheap):
-            problem.vertices = self._assembled.vertices
-        return problem
 
     def coupled(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> tuple[Any, Any]:
         """Stiffness [N/m] with the springs of all joints, and their loss; fixed unknowns cleared.

@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.errors import InputError, NotConverged
-from faying.fe.interface import Motion
-from faying.fe.vertices import VertexRestriction
+from faying.fe.interface import Interface
 from faying.joint.equilibrium import Equilibrium, Step, StickSlip, admissible, check_balance
 from faying.joint.joint_law import JointLaw
 from faying.numerics.constraint import constrain
@@ -28,20 +26,14 @@ CHEAP = 3  # the same where a factorisation costs no more than a few solutions
 # faces lie about where they end up: between these decades of imbalance, above this rate, a new one pays
 EARLY, LATE, SLOW = -0.5, -3.5, 4.8
 
-GUESSED = 1e-3  # imbalance of the equilibrium of the corners, which are wrong by far more
 ROUGH = 1e-2  # accuracy of the start of Newton's iteration where it is found by conjugate gradients
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
-
-
-Guess = tuple[tuple[Array, Array], ...]  # opening [m] and pressure [Pa] at the points of each joint
 
 
 class PreloadProblem(Equilibrium):
     """Parts with joints between them, ready for one load after another (each starts from the last).
 
-    fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do;
-    vertices: those of the mesh, for whoever has one to set: their own equilibrium says which springs to factorise with;
-    without them, springs at one pressure for each joint.
+    fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do.
     """
 
     def __init__(
@@ -49,7 +41,7 @@ class PreloadProblem(Equilibrium):
         stiffness: Any,
         mass: Any,
         rigid: Array,
-        joints: Sequence[tuple[Motion, JointLaw]],
+        joints: Sequence[tuple[Interface, JointLaw]],
         *,
         shift_frequency: float,
         solver: str | Factoriser | None = None,
@@ -61,10 +53,8 @@ class PreloadProblem(Equilibrium):
         self._cheap = isinstance(solver, Factoriser) and solver.cheap
         self.fixed = np.zeros(0, dtype=np.int64) if fixed is None else fixed
         self.shift_frequency = shift_frequency
-        self.mass = mass
         self._mass, self._shift = constrain(mass, self.fixed, 0.0), (2 * np.pi * shift_frequency) ** 2
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
-        self.vertices: VertexRestriction | None = None
         self.factor: Factorisation | None = None
         self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation
         self._scale = 1.0
@@ -83,12 +73,13 @@ class PreloadProblem(Equilibrium):
         check_balance(load, self._rigid)
 
     def _start(self, load: Array) -> Array:
-        """Displacement under springs that are tangent to p(approach) where the joints are likely to end up."""
-        springs, push = [], load
-        for (joint, law), (opening, pressure) in zip(self.joints, self._guess(load), strict=True):
-            k_n, k_t = law.stiffness(pressure)
+        """Displacement under springs that are tangent to p(approach) at the mean pressure that the load would give."""
+        springs, push, total = [], load, float(np.abs(load).sum()) / 4
+        for joint, law in self.joints:
+            mean = float(np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure))
+            k_n, k_t = law.stiffness(np.full(len(joint.weights), mean))
             springs.append(joint.springs(k_n, k_t))
-            offset = np.where(pressure > 0, pressure + k_n * (opening - joint.gap), 0.0)
+            offset = mean - k_n * (law.approach(mean) + joint.gap)
             push = push + joint.forces(offset, np.zeros((len(offset), 2)))
         push = self._admissible(push)
         if self.factor is not None:  # of a like state, taken from elsewhere
@@ -103,39 +94,6 @@ class PreloadProblem(Equilibrium):
                 return found
         self._factorise(springs)
         return self._near(push)
-
-    def _guess(self, load: Array) -> Guess:
-        """Where the joints are likely to end up under a load: as the corners of the elements say.
-
-        Only the corners move by themselves, a seventh of the unknowns or less. The parts are then too stiff in bending,
-        and pressures right to some tenths.
-        """
-        if self.vertices is None:
-            return self._uniform_guess(load)
-        unknowns, spread = self.vertices.unknowns, self.vertices.spread
-        coarse = PreloadProblem(
-            self.vertices.of_matrix(self.stiffness),
-            self.vertices.of_matrix(self.mass),
-            self._rigid[unknowns],
-            [(joint.carried(spread), law) for joint, law in self.joints],
-            shift_frequency=self.shift_frequency,
-            solver=self.solver if isinstance(self.solver, str) else None,
-            friction=self.friction,
-            fixed=np.flatnonzero(np.isin(unknowns, self.fixed)),
-        )
-        try:
-            found = coarse.solve(coarse._admissible(spread.T @ load), tolerance=GUESSED)
-        except (NotConverged, InputError):
-            return self._uniform_guess(load)
-        return tuple(zip(found.openings, found.pressures, strict=True))
-
-    def _uniform_guess(self, load: Array) -> Guess:
-        """Every joint at the mean pressure that the load would give it."""
-        total, joints = float(np.abs(load).sum()) / 4, []
-        for joint, law in self.joints:
-            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
-            joints.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
-        return tuple(joints)
 
     def _factorise(self, springs: list[Any]) -> None:
         self.factor = None  # one at a time in memory
