@@ -211,7 +211,7 @@ def test_wrong_number_of_forces(trained):
 
 
 def test_complex_modes_of_the_small_problem_are_those_of_all_its_vectors(trained):
-    """Higher modes join the lowest by first order; against the eigenvalues of the whole small problem."""
+    """Against the eigenvalues of the whole small problem."""
     from scipy.linalg import eig, eigh
 
     model = trained[1].model

@@ -315,7 +315,7 @@ class Reduction:
     ) -> tuple[list[Array], Array]:
         """What some modes of a variant leave (n, m), real and imaginary part where there is loss; their size (m,)."""
         springs = self.model.springs(laws, pressures)
-        values, vectors, _ = self.model.modes(springs, slight=0.0)  # no basis corrects what first order leaves
+        values, vectors, _ = self.model.modes(springs)
         values, vectors = values[which], vectors[:, which]
         momentum = self.model.matrices[2] @ vectors
         size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))

@@ -21,11 +21,9 @@ from faying.typing import Array, Complex
 _SINGLE = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass", "count", "coarse")
 _OF_JOINTS = ("weights", "gaps", "static_relative", "dynamic_relative")
 BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
-BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
 REUSE_BELOW = 0.1  # of the force out of balance: a tangent that leaves less serves once more
 EVEN = 2  # times that joints of one pressure each are solved: the pressure is that of the last
 OPENS = "preload: the joint opens fully on the way; load it in smaller steps"
-SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,32 +94,6 @@ class Variant:
     estimate: Array
     preload: PreloadState
     shapes: Complex
-
-
-def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT) -> tuple[Complex, Complex]:
-    """Lowest complex eigenvalues (m,) and vectors (d, m) of diag(real) + i loss, in rising order.
-
-    The lowest real modes, some more than are wanted, meet each other exactly; those above them join by what the loss
-    makes of them to first order. What that leaves is estimated, and where it is not slight the whole problem is solved.
-    """
-    from scipy.linalg import eig
-
-    low = min(count + BLOCK, len(real))
-    apart = real[:low, None] - real[None, low:]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mix = 1j * loss[:low, low:] / apart
-        # second-order shift of an eigenvalue, times the square of the greatest loss factor: what first order leaves
-        left = np.sum(np.abs(mix * mix * apart), axis=1) / real[:low] * np.max(np.abs(np.diag(loss)) / real) ** 2
-    if low == len(real) or not left[:count].max() < slight:
-        values, vectors = eig(np.diag(real) + 1j * loss)
-    else:
-        span = np.concatenate([np.eye(low), mix], axis=1).T
-        small = span.T @ (real[:, None] * span + 1j * (loss @ span))
-        values, inner = eig(np.linalg.solve(span.T @ span, small))  # the matrix on the left is close to one
-        vectors = span @ inner
-        vectors = vectors / np.linalg.norm(vectors, axis=0)
-    order = lowest_complex(values.real, count)
-    return values[order], vectors[:, order]
 
 
 class ReducedEquilibrium(Equilibrium):
@@ -250,14 +222,9 @@ class ReducedModel:
         motions = self._motions(self.dynamic_relative)
         return [law.springs(motion, p) for motion, law, p in zip(motions, laws, pressures, strict=True)]
 
-    def modes(
-        self, springs: Sequence[Springs[ReducedMotion]], slight: float = SLIGHT
-    ) -> tuple[Complex, Complex, Array]:
-        """Complex eigenvalues w^2 (1 + i eta) [1/s2] (m,), coefficients (d, m), the estimate (m,).
-
-        slight: relative error of an eigenvalue up to which first order is enough for the higher modes.
-        """
-        from scipy.linalg import eigh
+    def modes(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
+        """Complex eigenvalues w^2 (1 + i eta) [1/s2] (m,), coefficients (d, m), the estimate (m,)."""
+        from scipy.linalg import eig, eigh
 
         _, K, M = self.matrices
         K = K + sum(s.stiffness() for s in springs)
@@ -268,8 +235,9 @@ class ReducedModel:
         if not any(s.lossy for s in springs):
             return real[: self.count].astype(complex), shapes[:, : self.count].astype(complex), estimate
         loss = sum(s.loss() for s in springs)
-        values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count, slight)
-        return values, shapes @ inner, estimate
+        values, inner = eig(np.diag(real) + 1j * (shapes.T @ loss @ shapes))
+        order = lowest_complex(values.real, self.count)
+        return values[order], shapes @ inner[:, order], estimate
 
     def evaluate(
         self,
