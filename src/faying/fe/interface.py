@@ -15,24 +15,12 @@ from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index
 
 
-@dataclass(frozen=True, kw_only=True)
-class Interface:
-    """Where two faces meet: relative displacement at points that each carry a share of the area.
+class Motion:
+    """Relative motion of two faces at points that each carry a share of the area; see `Interface`."""
 
-    positions [m] (q, 3); weights, the areas [m2] (q,); normals (q, 3), from the first face to the second; gap, the
-    distance between the faces before any load [m] (q,). The operator `relative` (3q, unknowns) takes displacements to
-    (opening along the normal, two slips) at each point; second face minus first.
-    """
-
-    positions: Array
     weights: Array
-    normals: Array
     gap: Array
-    first_nodes: Index
-    first_values: Array
-    second_nodes: Index
-    second_values: Array
-    unknowns: int
+    relative: Any
 
     @property
     def area(self) -> float:
@@ -50,6 +38,39 @@ class Interface:
         """Nodal forces [N] (unknowns,) of a pressure [Pa] (q,) that pushes apart and shear tractions [Pa] (q, 2)."""
         local = np.concatenate([-pressure[:, None], shear], axis=1) * self.weights[:, None]
         return np.asarray(-(self.relative.T @ local.ravel()))
+
+    def carried(self, spread: Any) -> "CarriedMotion":
+        """The same motion from other displacements, which `spread` (unknowns, m) takes to these."""
+        return CarriedMotion(weights=self.weights, gap=self.gap, relative=(self.relative @ spread).tocsr())
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CarriedMotion(Motion):
+    """Relative motion by an operator (3q, m) from elsewhere; weights [m2] and gap [m] (q,) are those of `Interface`."""
+
+    weights: Array
+    gap: Array
+    relative: Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class Interface(Motion):
+    """Where two faces meet: relative displacement at points that each carry a share of the area.
+
+    positions [m] (q, 3); weights, the areas [m2] (q,); normals (q, 3), from the first face to the second; gap, the
+    distance between the faces before any load [m] (q,). The operator `relative` (3q, unknowns) takes displacements to
+    (opening along the normal, two slips) at each point; second face minus first.
+    """
+
+    positions: Array
+    weights: Array
+    normals: Array
+    gap: Array
+    first_nodes: Index
+    first_values: Array
+    second_nodes: Index
+    second_values: Array
+    unknowns: int
 
     @cached_property
     def frames(self) -> Array:

@@ -14,6 +14,7 @@ from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.mesh import Mesh
 from faying.fe.sides import nodes_of
 from faying.fe.tied import tie_stiffness
+from faying.fe.vertices import VertexRestriction
 from faying.joint.attachments import PointMass, Support
 from faying.memory import available
 from faying.mpi.over_mpi import OverMpi, processes_named
@@ -53,6 +54,11 @@ class AssembledParts:
         """Stiffness [N/m] that ties two faces which meet, whether or not their nodes match; see `tie_stiffness`."""
         modulus = max(self.materials[self.mesh.face_part[face]].E for face in faces)
         return tie_stiffness(self.mesh, faces, modulus)
+
+    @cached_property
+    def vertices(self) -> VertexRestriction | None:
+        """The corners of the elements; None where every node is one."""
+        return VertexRestriction.of(self.mesh)
 
     @cached_property
     def fixed(self) -> Index:
@@ -118,6 +124,13 @@ class AssembledParts:
         more += [mass.matrix(self.mesh) for mass in self.masses]
         given = [one @ acceleration for one in more if one is not None]
         return np.asarray(sum(given, self.matrices[1] @ acceleration))
+
+    @property
+    def is_parts_only(self) -> bool:
+        """Whether parts and supports are all that vibrates: bolts, dowels and masses add nothing."""
+        if self.masses or self.dowels:
+            return False
+        return all(b.stiffness is None and b.released is None and b.mass is None for b in self.fitted_bolts)
 
     @cached_property
     def rigid(self) -> Array:

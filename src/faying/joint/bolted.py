@@ -198,6 +198,11 @@ class BoltedStructure(Summary):
         return self._assembled.inertia(acceleration)
 
     @property
+    def is_parts_only(self) -> bool:
+        """Whether the parts under preload are all that vibrates: no bolt or dowel adds a stiffness or a mass."""
+        return self._assembled.is_parts_only
+
+    @property
     def rigid(self) -> Array:
         """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
         return self._assembled.rigid
@@ -305,16 +310,20 @@ class BoltedStructure(Summary):
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
         pairs = [(joint.interface, joint.law) for joint in self.joints]
-        return PreloadProblem(
+        way = self.solver(solver)
+        problem = PreloadProblem(
             self.supported_stiffness,
             self.matrices[1],
             self.rigid,
             pairs,
             shift_frequency=self.shift_frequency,
-            solver=self.solver(solver),
+            solver=way,
             friction=[joint.friction for joint in self.joints],
             fixed=self.fixed,
         )
+        if not (isinstance(way, Factoriser) and way.cheap):
+            problem.vertices = self._assembled.vertices
+        return problem
 
     def coupled(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> tuple[Any, Any]:
         """Stiffness [N/m] with the springs of all joints, and their loss; fixed unknowns cleared.

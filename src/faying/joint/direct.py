@@ -5,7 +5,7 @@ from typing import Any, final
 
 import numpy as np
 
-from faying.fe.interface import Interface
+from faying.fe.interface import Interface, Motion
 from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StickSlip, admissible, check_balance
 from faying.joint.joint_law import JointLaw
 from faying.joint.modal import EXACT, ModalProblem, Vibration, in_order_of
@@ -39,7 +39,7 @@ class PlainPreload(Equilibrium):
         self,
         stiffness: Any,
         rigid: Array,
-        joints: Sequence[tuple[Interface, JointLaw]],
+        joints: Sequence[tuple[Motion, JointLaw]],
         *,
         friction: Sequence[float | None],
         fixed: Index,

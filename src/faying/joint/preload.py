@@ -6,11 +6,13 @@ solutions (multigrid over MPI), each Newton step takes its own.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from faying.fe.interface import Interface
+from faying.errors import InputError, NotConverged
+from faying.fe.interface import Motion
+from faying.fe.vertices import VertexRestriction
 from faying.joint.equilibrium import Equilibrium, Step, StickSlip, admissible, check_balance
 from faying.joint.joint_law import JointLaw
 from faying.numerics.constraint import constrain
@@ -26,14 +28,25 @@ CHEAP = 3  # the same where a factorisation costs no more than a few solutions
 # faces lie about where they end up: between these decades of imbalance, above this rate, a new one pays
 EARLY, LATE, SLOW = -0.5, -3.5, 4.8
 
+GUESSED = 1e-3  # imbalance of the equilibrium of the corners, which are wrong by far more
 ROUGH = 1e-2  # accuracy of the start of Newton's iteration where it is found by conjugate gradients
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
+
+
+class Guess(NamedTuple):
+    """Where the joints are likely to end up: opening [m] and pressure [Pa] at the points of each; whether near it."""
+
+    joints: tuple[tuple[Array, Array], ...]
+    near: bool
 
 
 class PreloadProblem(Equilibrium):
     """Parts with joints between them, ready for one load after another (each starts from the last).
 
-    fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do.
+    fixed: unknowns that supports fix; rigid (unknowns, r): rigid motions that nothing resists, r = 0 where supports do;
+    vertices: those of the mesh, for whoever has one to set: their own equilibrium says which springs to factorise with;
+    without them, springs at one pressure for each joint. sprung: springs per area (k_n, k_t) [Pa/m] of each joint in
+    the factorisation at hand, where they are near to those under the load; None where they are not.
     """
 
     def __init__(
@@ -41,7 +54,7 @@ class PreloadProblem(Equilibrium):
         stiffness: Any,
         mass: Any,
         rigid: Array,
-        joints: Sequence[tuple[Interface, JointLaw]],
+        joints: Sequence[tuple[Motion, JointLaw]],
         *,
         shift_frequency: float,
         solver: str | Factoriser | None = None,
@@ -53,9 +66,12 @@ class PreloadProblem(Equilibrium):
         self._cheap = isinstance(solver, Factoriser) and solver.cheap
         self.fixed = np.zeros(0, dtype=np.int64) if fixed is None else fixed
         self.shift_frequency = shift_frequency
+        self.mass = mass
         self._mass, self._shift = constrain(mass, self.fixed, 0.0), (2 * np.pi * shift_frequency) ** 2
         self._rigid = np.linalg.qr(rigid)[0] if rigid.size else rigid
+        self.vertices: VertexRestriction | None = None
         self.factor: Factorisation | None = None
+        self.factorised_springs: list[tuple[Array, Array]] | None = None
         self._rate = 0.0  # conjugate-gradient steps for each decade of the residual, with this factorisation
         self._scale = 1.0
 
@@ -66,20 +82,21 @@ class PreloadProblem(Equilibrium):
         factorisation less is held. One that was shifted further, by this frequency [Hz], is left.
         """
         if shift_frequency <= self.shift_frequency:
-            self.factor, self._rate = factor, 0.0
+            self.factor, self.factorised_springs, self._rate = factor, None, 0.0
 
     def _check_load(self, load: Array) -> None:
         self._scale = float(np.linalg.norm(load))
         check_balance(load, self._rigid)
 
     def _start(self, load: Array) -> Array:
-        """Displacement under springs that are tangent to p(approach) at the mean pressure that the load would give."""
-        springs, push, total = [], load, float(np.abs(load).sum()) / 4
-        for joint, law in self.joints:
-            mean = float(np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure))
-            k_n, k_t = law.stiffness(np.full(len(joint.weights), mean))
+        """Displacement under springs that are tangent to p(approach) where the joints are likely to end up."""
+        guess = self._guess(load)
+        laid, springs, push = [], [], load
+        for (joint, law), (opening, pressure) in zip(self.joints, guess.joints, strict=True):
+            k_n, k_t = law.stiffness(pressure)
+            laid.append((k_n, k_t))
             springs.append(joint.springs(k_n, k_t))
-            offset = mean - k_n * (law.approach(mean) + joint.gap)
+            offset = np.where(pressure > 0, pressure + k_n * (opening - joint.gap), 0.0)
             push = push + joint.forces(offset, np.zeros((len(offset), 2)))
         push = self._admissible(push)
         if self.factor is not None:  # of a like state, taken from elsewhere
@@ -92,16 +109,49 @@ class PreloadProblem(Equilibrium):
             found, count = self._gradients(product, push, ROUGH, limit=limit)
             if count < limit:
                 return found
-        self._factorise(springs)
+        self._factorise(springs, laid if guess.near else None)
         return self._near(push)
 
-    def _factorise(self, springs: list[Any]) -> None:
+    def _guess(self, load: Array) -> Guess:
+        """Where the joints are likely to end up under a load: as the corners of the elements say.
+
+        Only the corners move by themselves, a seventh of the unknowns or less. The parts are then too stiff in bending,
+        and pressures right to some tenths.
+        """
+        if self.vertices is None:
+            return self._uniform_guess(load)
+        unknowns, spread = self.vertices.unknowns, self.vertices.spread
+        coarse = PreloadProblem(
+            self.vertices.of_matrix(self.stiffness),
+            self.vertices.of_matrix(self.mass),
+            self._rigid[unknowns],
+            [(joint.carried(spread), law) for joint, law in self.joints],
+            shift_frequency=self.shift_frequency,
+            solver=self.solver if isinstance(self.solver, str) else None,
+            friction=self.friction,
+            fixed=np.flatnonzero(np.isin(unknowns, self.fixed)),
+        )
+        try:
+            found = coarse.solve(coarse._admissible(spread.T @ load), tolerance=GUESSED)
+        except (NotConverged, InputError):
+            return self._uniform_guess(load)
+        return Guess(tuple(zip(found.openings, found.pressures, strict=True)), near=True)
+
+    def _uniform_guess(self, load: Array) -> Guess:
+        """Every joint at the mean pressure that the load would give it."""
+        total, joints = float(np.abs(load).sum()) / 4, []
+        for joint, law in self.joints:
+            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
+            joints.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
+        return Guess(tuple(joints), near=False)
+
+    def _factorise(self, springs: list[Any], factorised_springs: list[tuple[Array, Array]] | None) -> None:
         self.factor = None  # one at a time in memory
         stiffness = sum(springs, self.stiffness)
         near = Shifted(stiffness=constrain(stiffness, self.fixed), mass=self._mass, shift=self._shift)
         self.factor = factorise_roughly(near, rigid=self._rigid, solver=self.solver)
         self.factorisations += 1
-        self._rate = 0.0
+        self.factorised_springs, self._rate = factorised_springs, 0.0
 
     def _clear_fixed(self, force: Array) -> Array:
         """A force with nothing on the unknowns that supports fix."""
@@ -145,11 +195,11 @@ class PreloadProblem(Equilibrium):
         return bool(LATE < left < EARLY and self._rate > SLOW)
 
     def _renew(self, tangents: list[tuple[Any, Array, Array]]) -> None:
-        springs = []
+        laid = []
         for joint, k_n, k_t in tangents:
             shear = np.trace(k_t, axis1=1, axis2=2) / 2
-            springs.append(joint.springs(k_n / joint.weights, shear / joint.weights))
-        self._factorise(springs)
+            laid.append((k_n / joint.weights, shear / joint.weights))
+        self._factorise([joint.springs(*k) for (joint, _), k in zip(self.joints, laid, strict=True)], laid)
 
     def _gradients(self, product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = AGED) -> Step:
         """Conjugate gradients: the solution and how many steps it took, `limit` where that was not enough."""

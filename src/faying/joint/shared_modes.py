@@ -8,13 +8,15 @@ from faying.fe.interface import Interface
 from faying.joint.assembled_parts import added
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import EXACT, SPARE_MODES, ModalProblem, Vibration, in_order_of
+from faying.joint.preload import PreloadProblem
 from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions, checked_preload
 from faying.numerics.changed import UpdatedStiffness, assembled
+from faying.numerics.constraint import constrain
 from faying.numerics.damped import damped_near
 from faying.numerics.memory import check_modes
-from faying.numerics.modal_reanalysis import ModalReanalysis, refined_modes
+from faying.numerics.modal_reanalysis import ModalReanalysis, near_factor, refined_modes
 from faying.numerics.modes import Modes, lowest_modes
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
@@ -52,6 +54,34 @@ class SharedModes:
     def __init__(self) -> None:
         self.near: ModalReanalysis | None = None  # where the modes were found last
         self._joint_stiffness: Any = None  # stiffness [N/m] of the springs in that of its basis
+
+    def begin(self, problem: ModalProblem, preload: PreloadProblem) -> None:
+        """Take the factorisation of a preload where its springs are near to those that it led to, if none is at hand.
+
+        It must be of what vibrates: bolts that have a stiffness or a mass of their own are not in it.
+        """
+        structure, factor = problem.structure, preload.factor
+        alike = structure.is_parts_only and preload.shift_frequency == problem.shift_frequency
+        if self.near is not None or preload.factorised_springs is None or factor is None or not alike:
+            return
+        laid = [
+            constrain(j.interface.springs(*k), structure.fixed, 0.0)
+            for j, k in zip(structure.joints, preload.factorised_springs, strict=True)
+        ]
+        joint_stiffness = added(None, laid)
+        stiffness, mass = added(structure.dynamic_matrices[0], [joint_stiffness]), structure.dynamic_matrices[1]
+        check_modes(problem.mode_count, stiffness.shape[0])
+        self.near = near_factor(
+            factor,
+            stiffness,
+            mass,
+            problem.mode_count,
+            rigid=structure.rigid,
+            shift_frequency=problem.shift_frequency,
+            spare=SPARE_MODES,
+            most=_most(problem),
+        )
+        self._joint_stiffness = joint_stiffness
 
     def of(
         self,
@@ -147,9 +177,10 @@ class Reanalysis:
         return checked_preload(self.modal.structure, self._problem, self._preloads[number])
 
     def vibrate(self, springs: Sequence[Springs[Interface]]) -> Vibration:
-        """See `Engine`; the next preload starts from the factorisation of these modes."""
+        """See `Engine`; preload and modes lend each other their factorisations."""
         shared, preload, modal = self._shared, self._problem, self.modal
         structure, choice = modal.structure, modal.choice
+        shared.begin(modal, preload)
         modes, stiffness = shared.of(modal, springs)
         loss = structure.joint_loss(springs, viscous=choice.damping == "viscous")
         check_motions(structure, modes)

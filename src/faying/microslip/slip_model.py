@@ -10,7 +10,7 @@ from typing import Self
 
 import numpy as np
 
-from faying.fe.interface import Interface
+from faying.fe.interface import Motion
 from faying.microslip.hysteresis import Cycle
 from faying.microslip.microslip import Microslip
 from faying.typing import Array
@@ -75,7 +75,7 @@ class SlipJoint:
 
 
 def slip_joints(
-    interfaces: Sequence[Interface], displacement: Array, laws: Sequence[Microslip], relatives: Sequence[Array]
+    interfaces: Sequence[Motion], displacement: Array, laws: Sequence[Microslip], relatives: Sequence[Array]
 ) -> tuple[SlipJoint, ...]:
     """Joints in a basis, under a preload.
 

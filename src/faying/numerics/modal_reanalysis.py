@@ -285,10 +285,43 @@ def refined_modes(
     wanted = count - rigid.shape[1] - spare
     if not (isinstance(factor, Single) and wanted > 0):
         return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid)
+    near = near_factor(factor, stiffness, mass, count, rigid=rigid, shift_frequency=shift_frequency, spare=spare)
+    try:
+        return near.under(stiffness, wanted, tolerance=REFINED, spare=spare)
+    except NotConverged:
+        del factor, near  # before the next factorisation: one at a time in memory
+    if isinstance(solver, Factoriser):
+        factor = solver.factorise(matrix, single=False)
+    else:
+        factor = factorise(matrix.assembled(), solver)
+    return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid)
+
+
+def near_factor(
+    factor: Factorisation,
+    stiffness: Any,
+    mass: Any,
+    count: int,
+    *,
+    rigid: Array,
+    shift_frequency: float,
+    spare: int = 0,
+    most: int | None = None,
+) -> ModalReanalysis:
+    """Find the lowest modes to a few digits by a factorisation at hand, as a basis for exact ones and those nearby.
+
+    Args:
+        factor: of `stiffness` and `mass` with this shift, in any precision.
+        stiffness, mass, count, rigid, shift_frequency, spare: as `refined_modes` takes them.
+        most: as `ModalReanalysis` takes it.
+
+    Raises:
+        InputError, NotConverged: as `lowest_modes` does.
+    """
     # those beyond the last one wanted keep another from standing in its place while residuals are large
     unwatched = max(WATCHED - spare, 0)
     tolerance = np.concatenate([np.full(count, START), np.full(unwatched, np.inf)])
-    rough = lowest_modes(
+    modes = lowest_modes(
         stiffness,
         mass,
         len(tolerance),
@@ -297,16 +330,7 @@ def refined_modes(
         rigid=rigid,
         tolerance=tolerance,
     )
-    near = ModalReanalysis(rough, stiffness, mass, rigid=rigid.shape[1])
-    try:
-        return near.under(stiffness, wanted, tolerance=REFINED, spare=spare)
-    except NotConverged:
-        del factor, near, rough  # before the next factorisation: one at a time in memory
-    if isinstance(solver, Factoriser):
-        factor = solver.factorise(matrix, single=False)
-    else:
-        factor = factorise(matrix.assembled(), solver)
-    return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid)
+    return ModalReanalysis(modes, stiffness, mass, rigid=rigid.shape[1], most=most)
 
 
 def nearby_modes(
