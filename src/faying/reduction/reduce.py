@@ -315,7 +315,7 @@ class Reduction:
     ) -> tuple[list[Array], Array]:
         """What some modes of a variant leave (n, m), real and imaginary part where there is loss; their size (m,)."""
         springs = self.model.springs(laws, pressures)
-        values, vectors, _ = self.model.modes(springs)
+        values, vectors, _ = self.model.modes(springs, slight=0.0)  # no basis corrects what first order leaves
         values, vectors = values[which], vectors[:, which]
         momentum = self.model.matrices[2] @ vectors
         size = np.abs(values) * np.abs(np.einsum("ij,ij->j", vectors.conj(), momentum))
@@ -387,7 +387,7 @@ class Reduction:
             residuals = []
             for k in poor:
                 one, start = variants[k], found[k].displacement if k in found else variants[k].start
-                found[k] = self.at(one).equilibrium(one.laws, one.forces, one.friction, start)
+                found[k] = self.at(one).equilibrium_from(one.laws, one.forces, one.friction, start)
                 residuals.append(self.static_residual(one.laws, one.forces, one.friction, found[k]))
             right = np.asfortranarray(np.stack(residuals, axis=1))
             answers = self.factor.solve(right)

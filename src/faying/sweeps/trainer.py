@@ -127,7 +127,7 @@ class Trainer:
 
     def _learn(self, reduction: Reduction, points: Iterable[int]) -> None:
         """Tell the bases what points need of them."""
-        model, start = reduction.model, None
+        model, start = reduction.model.grouped(), None
         for index in points:
             self.report("compression", 0, 0)
             try:
