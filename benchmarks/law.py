@@ -3,9 +3,7 @@
     uv run python benchmarks/law.py [--json]
 
 1. A law's curve: at_closure at 500 points, all quantities, for a law just built; in milliseconds.
-2. at_pressure at a million random pressures, all quantities, over six numpy.interp calls (500-point table) on the same
-   pressures; and its greatest relative error against exact inversion on a tenth of them.
-3. Exact at_pressure over the naive way: one scipy.optimize.brentq per pressure on at_closure.
+2. at_pressure over the naive way: one scipy.optimize.brentq per pressure on at_closure.
 """
 
 import json
@@ -22,7 +20,6 @@ from faying.contact import SurfaceInputs
 from faying.contact.mates import Mates
 
 LAW = JK(D=2.39, G=1.53e-10, pair=ContactPair(CATALOGUE["45 steel"], RIGID), scan_area=16e-6)
-SIX = ("area", "k_n", "k_t", "loss_n", "loss_t", "energy_n")
 
 
 def cpu(work: Callable[[], object], repeats: int) -> float:
@@ -54,31 +51,6 @@ def curves() -> dict[str, float]:
     return {f"the same, slowest of {len(times)} laws: {slowest} [ms]": times[slowest]}
 
 
-def many() -> dict[str, float]:
-    rng = np.random.default_rng(0)
-    low, high = 1e3, 0.9 * LAW.greatest_pressure
-    p = np.exp(rng.uniform(np.log(low), np.log(high), 1_000_000))
-    table = np.geomspace(low, high, 500)
-    columns = [LAW.at_pressure(table).quantities()[name] for name in SIX]
-    fresh = LAW.with_()
-    start = time.process_time()
-    _ = fresh._pressure_table
-    build = time.process_time() - start
-    ours, peer = [], []
-    for _ in range(7):  # in turns, so that both see the same machine
-        ours.append(cpu(lambda: fresh.at_pressure(p), 1))
-        peer.append(cpu(lambda: [np.interp(p, table, column) for column in columns], 1))
-    read, exact = fresh.at_pressure(p).quantities(), fresh.at_pressure(p[:100_000], exact=True).quantities()
-    error = max(float(np.max(np.abs(read[n][:100_000] - exact[n]) / np.abs(exact[n]))) for n in SIX)
-    return {
-        "a million pressures [ms]": 1e3 * median(ours),
-        "six interp calls [ms]": 1e3 * median(peer),
-        "ratio to six interp calls": median(ours) / median(peer),
-        "greatest relative error": error,
-        "table, once per law [ms]": 1e3 * build,
-    }
-
-
 def naive() -> dict[str, float]:
     p = np.geomspace(1e4, 0.9 * LAW.greatest_pressure, 60)
     first, last = np.log(LAW.closure_range)
@@ -88,13 +60,13 @@ def naive() -> dict[str, float]:
             lambda u: float(np.log(LAW.at_closure(np.exp(u)).pressure)) - np.log(target), first, last, xtol=1e-12
         )
 
-    ours = cpu(lambda: LAW.at_pressure(p, exact=True), 11)
+    ours = cpu(lambda: LAW.at_pressure(p), 11)
     peer = cpu(lambda: [LAW.at_closure(np.exp(one(v))) for v in p], 3)
     return {"exact inversion over brentq per point, 60 points": ours / peer}
 
 
 if __name__ == "__main__":
-    figures = curve() | curves() | many() | naive()
+    figures = curve() | curves() | naive()
     if "--json" in sys.argv:
         print(json.dumps(figures, indent=2))
     else:

@@ -66,10 +66,10 @@ def test_commands(page, checkout):
             continue
         if line == "app":  # it serves until it is ended; tests/app has it
             continue
-        # no cluster is here, and maybe no MPI: tests/sweeps and tests/mpi have them
+        # maybe no MPI is here: tests/mpi has it
         # twelve runs are minutes: tests/form/test_waviness.py has the draws
         of_mpi = "--mpi" in shlex.split(line) and missing_mpi()
-        if "--dask" in shlex.split(line) or "waviness_seed" in line or of_mpi:
+        if "waviness_seed" in line or of_mpi:
             named, *words = shlex.split(line)
             command = cli.get_command(click.Context(cli), named)
             command.make_context(named, words)  # raises where the words are wrong

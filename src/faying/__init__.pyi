@@ -12,7 +12,6 @@ from .bolt.solid_bolt import SolidBolt as SolidBolt
 from .contact.compare import Comparison as Comparison
 from .contact.law import ContactLaw as ContactLaw
 from .contact.mates import Mates as Mates
-from .contact.mates import law_for as law_for
 from .contact.models.half_space import HalfSpace as HalfSpace
 from .contact.models.jk import JK as JK
 from .contact.response import Response as Response

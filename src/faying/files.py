@@ -184,17 +184,17 @@ def together(folder: Path, remedy: str, kept: Sequence[str] = ()) -> Iterator[Pa
             except InputError as fault:
                 whole = [hidden / one for one in kept if (hidden / one).is_file()]
                 with uninterrupted():
-                    _appear(hidden, folder, whole)
+                    _appear(folder, whole)
                 more = f"; {', '.join(one.name for one in whole)} was written" if whole else ""
                 raise InputError(str(fault).replace(str(hidden), str(folder)) + more) from None
             with uninterrupted():
-                _appear(hidden, folder, sorted(path for path in hidden.iterdir() if path.name != LOCK))
+                _appear(folder, sorted(path for path in hidden.iterdir() if path.name != LOCK))
         finally:
             if lock is not None:
                 release(hidden, lock)
 
 
-def _appear(hidden: Path, folder: Path, files: Sequence[Path]) -> None:
+def _appear(folder: Path, files: Sequence[Path]) -> None:
     """Move files from the hidden folder to their place."""
     if not files:
         return

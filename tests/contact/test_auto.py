@@ -65,7 +65,7 @@ def test_the_default_does_not_hang_on_the_window():
     k_n = {"auto": [], "jk": []}
     for share in (0.25, 0.5, 1.0):
         for model, row in k_n.items():
-            law = faying.law_for(scan=scan.cropped(share), pair=PAIR, counter="smooth", model=model)
+            law = faying.Mates(scan.cropped(share), materials=PAIR, other="smooth").law(model)
             row.append(float(law.at_pressure(MIDDLE).k_n))
     assert max(k_n["auto"]) / min(k_n["auto"]) < 1.1
     assert max(k_n["jk"]) / min(k_n["jk"]) > 1.5
@@ -103,7 +103,8 @@ def test_rubber_has_no_hardness_and_meets_elastically():
     rubber = faying.Material(name="rubber", E=2e6, nu=0.49, density=1100, hardness=np.inf)
     pair = faying.ContactPair(rubber, faying.RIGID)
     z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 5, points=128, side=0.5e-3)
-    law = faying.law_for(scan=Scan(heights=z, spacing=(0.5e-3 / 128,) * 2), pair=pair, counter="smooth")
+    scan = Scan(heights=z, spacing=(0.5e-3 / 128,) * 2)
+    law = faying.Mates(scan, materials=pair, other="smooth").law()
     assert law.name == "half-space"
     p = law.greatest_pressure / 10
     assert law.contact_at(p).plastic_work == 0
@@ -160,7 +161,7 @@ def test_stability_asks_each_part_as_a_scan_of_its_own():
     scan = Scan(heights=z, spacing=(0.5e-3 / 128,) * 2)
     found = stability(faying.Mates(scan, materials=PAIR), model="jk", pressure=1e6)
     for share, name in ((1.0, FULL), (0.5, "half window")):
-        law = faying.law_for(scan=scan.cropped(share), pair=PAIR, model="jk")
+        law = faying.Mates(scan.cropped(share), materials=PAIR).law("jk")
         assert found.k_n[name] == pytest.approx(float(law.at_pressure(1e6).k_n), rel=1e-9)
     assert not found.stable
     exact = stability(faying.Mates(scan, materials=PAIR, other="smooth"), model="half-space", pressure=MIDDLE)

@@ -14,7 +14,7 @@ from faying.contact.models.half_space import HalfSpace
 from faying.errors import InputError
 from faying.halfspace import solve_half_space
 from faying.halfspace.sized import solve_with_size
-from faying.halfspace.solve import halved_map, refined_map
+from faying.halfspace.solve import halved_map
 from faying.halfspace.spots import Spots
 from faying.hardness import VickersHardness
 from faying.joint.joint_law import JointLaw
@@ -218,26 +218,6 @@ def test_spots_join_across_the_borders_of_a_map_that_repeats():
     at = spots.hardness(law)
     assert at[0, 1] == at[5, 1] == pytest.approx(float(law.at(spots.diagonals.max())))
     assert at[0, 6] == pytest.approx(float(law.at(np.sqrt(12.0))))
-
-
-def test_refined_waves_are_the_same_waves():
-    x = (np.arange(16) + 0.5) / 16
-    wave = np.cos(2 * np.pi * (2 * x[:, None] + 3 * x[None, :]) + 0.4)
-    fine = (np.arange(64) + 0.5) / 64
-    exact = np.cos(2 * np.pi * (2 * fine[:, None] + 3 * fine[None, :]) + 0.4)
-    assert refined_map(wave, (64, 64)) == pytest.approx(exact, abs=1e-12)
-
-
-def test_the_change_with_resolution_is_split_into_points_and_waves():
-    law = HalfSpace(self_affine(128, 0.5), PAIR)
-    split = law.resolution(10e6)
-    coarse, spacing = halved_map(law.scan.heights, law.scan.spacing)
-    from_half = law._solve(coarse, spacing, 10e6).normal_stiffness(loading=False)
-    all_points = law.contact_at(10e6).normal_stiffness(loading=False)
-    assert split["numerical"] + split["band"] == pytest.approx(np.log(all_points / from_half), abs=0.02)
-    # waves that are resolved already leave little for more points to find
-    smooth = HalfSpace(self_affine(256, 3.0), ContactPair(STEEL, STEEL), elastic=True)
-    assert abs(smooth.resolution(10e6)["band"]) < 0.05
 
 
 def test_one_given_hardness_is_that_of_all_spots():

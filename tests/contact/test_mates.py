@@ -307,8 +307,6 @@ MISUSES = {
     "a pair of an unknown name": (lambda: faying.ContactPair("45 stel", "45 steel"), "no material"),
     "a pair of numbers alone": (lambda: faying.ContactPair(1, 2), "material = 1"),
     "a law of names": (lambda: faying.JK(D=2.4, G=1e-10, scan_area=1e-6, pair="45 steel"), "ContactPair"),
-    "law_for without a scan": (lambda: faying.law_for(scan=3, pair=PAIR), "given as int"),
-    "law_for with a wrong pair": (lambda: faying.law_for(scan=SCAN, pair=4), "material = 4"),
 }
 
 

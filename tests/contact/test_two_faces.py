@@ -82,7 +82,7 @@ def test_a_rougher_pair_is_softer():
     scan = rough(3)
     for model in ("persson", "gw-ke"):
         both, one = (
-            float(faying.law_for(scan=scan, pair=pair, counter=c, model=model).at_pressure(1e7).k_n)
+            float(faying.Mates(scan, materials=pair, other=c).law(model).at_pressure(1e7).k_n)
             for c in ("same", "smooth")
         )
         assert both / one == pytest.approx(2**-0.5, rel=0.02)

@@ -109,7 +109,6 @@ CALLS = {
     "Mates.compare": (MATES.compare, {"pressure": 1e5, "laws": ["jk"]}),
     "Mates.comparison": (MATES.comparison, {"pressure": 1e5, "laws": ["jk"]}),
     "Mates.compare_plot": (MATES.compare_plot, {"pressure": [1e5, 2e5], "laws": ["jk"], "quantity": "k_n", "ax": None}),
-    "law_for": (faying.law_for, {"scan": SCAN, "pair": PAIR, "counter": "same", "model": "jk"}),
     "JK": (faying.JK, {"D": 2.4, "G": 1e-10, "pair": PAIR, "scan_area": 1e-8, "alpha": 0.3, "gamma": 1.5}),
     "JK.specific_damping": (JK.specific_damping, {"al": 1e-12}),
     "HalfSpace": (
@@ -144,7 +143,7 @@ CALLS = {
     "TabulatedLaw.from_csv": (contact.TabulatedLaw.from_csv, {"path": "LAW.csv"}),
     "WangKomvopoulos": (contact.WangKomvopoulos, {"D": 2.4, "G": 1e-10, "pair": PAIR, "scan_area": 1e-8}),
     "YanKomvopoulos": (contact.YanKomvopoulos, {"D": 2.4, "G": 1e-10, "pair": PAIR, "scan_area": 1e-8}),
-    "ContactLaw.at_pressure": (JK.at_pressure, {"pressure": 1e5, "exact": True}),
+    "ContactLaw.at_pressure": (JK.at_pressure, {"pressure": 1e5}),
     "ContactLaw.plot": (JK.plot, {"pressure": [1e5, 2e5], "axes": None}),
     "ContactLaw.with_": (JK.with_, {"D": 2.5, "pair": PAIR}),
     "Comparison.spread": (COMPARISON.spread, {"quantity": "k_n"}),
@@ -174,7 +173,7 @@ MADE |= {"Roughness"}
 MADE |= {"synthesize", "asperity", "laws", "contact"}
 INNER = {"normal_stiffness", "slip", "at_closure", "from_entries", "from_surface"}
 INNER |= {"rough_for", "watched", "closing", "contact_at", "resolution"}
-INNER |= {"value", "resolution_error", "stiffness_of_contact", "indented", "needed_for"}
+INNER |= {"value", "stiffness_of_contact", "indented", "needed_for"}
 INNER |= {"supplies", "check", "read", "text"}
 INNER |= {"from_score", "from_standard", "log_density", "quantile", "score", "standardised", "within"}
 OF_EVERY_LAW = {"at_pressure", "plot", "with_"}

@@ -13,6 +13,6 @@ class Given:
     def __init__(self, name="given", greatest_pressure=1e9, **given):
         self.name, self.greatest_pressure, self.given = name, greatest_pressure, given
 
-    def at_pressure(self, pressure, *, exact=None):
+    def at_pressure(self, pressure):
         p = np.asarray(pressure, dtype=float)
         return Response(pressure=p, **{name: function(p) for name, function in self.given.items()})

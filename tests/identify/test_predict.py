@@ -13,7 +13,6 @@ from faying.distribution import Distribution
 from faying.errors import FayingError, InputError
 from faying.identify import predict as module
 from faying.identify.prediction import Prediction
-from faying.identify.sampling import evaluate
 from faying.identify.sampling.ensemble import Ensemble, Inputs
 from faying.identify.sampling.evaluate import Evaluator, Reduced
 from faying.identify.sampling.store import SampleStore
@@ -22,7 +21,6 @@ from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes
 from faying.reduction.reduce import Reduction
 from faying.study import Study
-from tests.helpers.cluster import cluster_of
 from tests.helpers.studies import write
 
 SCATTER = """
@@ -178,30 +176,6 @@ def test_an_interrupted_prediction_goes_on(plan, tmp_path, monkeypatch):
     assert found.answered == 64
     assert Prediction.load(out) == found
     assert not out.with_name("p.nc.part").exists()
-
-
-@pytest.mark.slow  # the same cluster runs a sweep in tests/sweeps/test_sweep.py
-def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, monkeypatch):
-    """To the last bit, in the same bases."""
-    pytest.importorskip("distributed", reason="the extra dask is not installed")
-    monkeypatch.setattr(evaluate, "CHUNK", 4)
-    ensemble = Ensemble.of(plan, 32, 1)
-    reduced = Reduced(ensemble)
-    here, bases, told = reduced.rows(ensemble), reduced.model, []
-    with cluster_of(tmp_path, 2) as cluster:
-
-        def report(stage, done, total):
-            told.append((stage, done))
-            if done == total // 2 > 0 and len(cluster.alive()) == 2:
-                cluster.kill("worker-0")
-
-        reduced.dask, reduced.report = cluster.address, report
-        there = reduced.rows(ensemble)
-        assert cluster.alive() == ["worker-1"]
-    assert told == [("evaluations", done) for done in range(0, 33, 4)]
-    assert reduced.model is bases
-    for name, values in here.items():
-        assert np.array_equal(there[name], values, equal_nan=name != "reasons"), name
 
 
 @pytest.mark.parametrize(

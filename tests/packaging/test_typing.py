@@ -27,7 +27,7 @@ axes = faces.compare_plot(laws=["jk", "persson"])
 axes.set_title("my scan")
 given = faying.Mates.of_fractal(D=2.39, G="0.153 nm", scan_area="16 mm^2", materials=("45 steel", "rigid"))
 pair = faying.ContactPair("45 steel", faying.CATALOGUE["S355"])
-smooth = faying.law_for(scan=scan, pair=pair, counter="smooth", model="gw-ke")
+smooth = faying.Mates(scan, materials=pair, other="smooth").law("gw-ke")
 result = faying.run("study.toml")
 print(result.frequencies, given.line, smooth.name)
 '''

@@ -125,7 +125,7 @@ def test_every_route_has_the_same_answer(folder, scan, model):
     assert k_n(by_recipe(sweep)) == want
     if model != "half-space":  # check solves no contact
         assert k_n(by_check(plan)) == want
-    assert k_n(faying.law_for(scan=heights, pair="45 steel", model=model, cache=folder / ".faying")) == want
+    assert k_n(faying.Mates(heights, materials="45 steel", cache=folder / ".faying").law(model)) == want
 
     said = by_command("--scan", str(file), "--model", model, "--material", "45 steel")
     assert said["pressure"]["values"][::2] == pytest.approx([PRESSURES[0], PRESSURES[-1]], rel=1e-12)

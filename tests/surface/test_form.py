@@ -6,7 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from faying import InputError, Scan
-from faying.surface.filters import gaussian_lowpass
 from faying.surface.form import filled, find_spikes, levelled, prepared
 from faying.surface.roughness import mean_peak_to_valley, roughness
 from faying.surface.scan import Profile
@@ -103,34 +102,6 @@ def test_a_sine_has_the_textbook_roughness():
     # rms of forward differences: 2 a/d sin(pi d/wave) / sqrt 2
     assert r.Rdq == pytest.approx(2 * a / 1e-6 * np.sin(np.pi / 20) / 2**0.5, rel=1e-2)
     assert (r.Sq, r.Sa, r.Sdq) == (r.Rq, r.Ra, r.Rdq)
-
-
-@pytest.mark.parametrize(("ratio", "passed"), [(1.0, 0.5), (2.0, 2 ** -(1 / 4)), (0.5, 2**-4.0), (8.0, 2 ** -(1 / 64))])
-def test_the_gaussian_filter_passes_what_iso_16610_says(ratio, passed):
-    # amplitude transmission exp(-pi (a c/w)^2) = 2^-(c/w)^2
-    n, d, cutoff = 1024, 1e-6, 32e-6
-    wave = ratio * cutoff
-    x = np.arange(n) * d
-    line = Profile(heights=np.cos(2 * np.pi * x / wave), spacing=d)
-    middle = slice(n // 2 - 128, n // 2 + 128)
-    out = gaussian_lowpass(line, cutoff).heights[middle]
-    assert out @ line.heights[middle] / 128 == pytest.approx(passed, abs=2e-3)
-    scan = Scan(heights=np.tile(line.heights[:512], (64, 1)), spacing=(d, d))
-    areal = gaussian_lowpass(scan, cutoff).heights[32, 128:384]
-    assert areal @ scan.heights[32, 128:384] / 128 == pytest.approx(passed, abs=2e-3)
-
-
-def test_the_filter_keeps_constants_at_borders_and_holes():
-    z = np.full((40, 40), 7e-6)
-    z[5:9, 5:9] = np.nan
-    scan = Scan(heights=z, spacing=(1e-6, 1e-6))
-    assert np.nanmax(np.abs(gaussian_lowpass(scan, 10e-6).heights - 7e-6)) < 1e-18
-
-
-def test_cutoffs_outside_the_scan_are_refused():
-    rough = spectral((64, 64), spacing=1e-6, D=2.5, Rq=1e-6)
-    with pytest.raises(InputError, match="between twice the spacing"):
-        gaussian_lowpass(rough, 1e-6)
 
 
 def test_the_mean_height_of_a_sine_is_twice_its_amplitude():

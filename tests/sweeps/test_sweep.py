@@ -22,7 +22,6 @@ from faying.sweeps import sweep as module
 from faying.sweeps.axes import Axis, Grid, axis_of
 from faying.sweeps.sweep import sweep
 from faying.sweeps.variant_builder import VariantBuilder
-from tests.helpers.cluster import cluster_of
 from tests.helpers.preloads import pulled
 from tests.helpers.studies import write
 
@@ -172,33 +171,6 @@ def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "CHUNK", 6)
     there = sweep(plan, axes(), tmp_path / "out.nc", jobs=2)
     assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
-
-
-def test_a_cluster_gives_the_same_when_a_worker_dies_half_way(plan, tmp_path, monkeypatch):
-    """To the last bit: each chunk begins anew, and libraries take one thread here and there."""
-    pytest.importorskip("distributed", reason="the extra dask is not installed")
-    monkeypatch.setattr(module, "CHUNK", 1)
-    real, bases = module._first_bases, []
-
-    def once(*given):
-        bases.extend([] if bases else [real(*given)])
-        return bases[0]
-
-    monkeypatch.setattr(module, "_first_bases", once)
-    here = sweep(plan, axes(), tmp_path / "here.nc")
-    told = []
-    with cluster_of(tmp_path, 2) as cluster:
-
-        def report(stage, done, total):
-            told.append(done)
-            if stage == "evaluations" and done == total // 2 and len(cluster.alive()) == 2:
-                cluster.kill("worker-0")
-
-        there = sweep(plan, axes(), tmp_path / "there.nc", dask=cluster.address, report=report)
-        assert cluster.alive() == ["worker-1"]
-    assert told[-12:] == list(range(1, 13))
-    for name in ("frequencies", "loss_factors", "estimate", "greatest_pressure", "open_share", "above_range_share"):
-        assert np.array_equal(getattr(there, name), getattr(here, name)), name
 
 
 def test_points_beyond_the_law_are_held_there_and_counted(plan, tmp_path):

@@ -1,6 +1,7 @@
 """Processes that evaluate chunks: they end with the one that started them, however it ends."""
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -10,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faying.errors import FayingError
+from faying.errors import FayingError, InputError, NotConverged, ReadError
+from faying.study.declaration.reader import StudyFaults
 from faying.sweeps.parallel import each
 from tests.fuzz.kills import of_session
 
@@ -27,7 +29,7 @@ def slow(folder, indices):
 
 if __name__ == "__main__":
     signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup hands on that it is ignored
-    list(each(functools.partial(slow, sys.argv[1]), [[0], [1]], 2, None))
+    list(each(functools.partial(slow, sys.argv[1]), [[0], [1]], 2))
 """
 
 
@@ -63,4 +65,13 @@ def killed(indices):
 
 def test_a_worker_that_is_killed_is_a_fault_in_words():
     with pytest.raises(FayingError, match="one of 2 processes was ended from outside, often for lack of memory"):
-        list(each(killed, [[0], [1], [2]], 2, None))
+        list(each(killed, [[0], [1], [2]], 2))
+
+
+def test_every_error_of_ours_comes_through_a_process():
+    plain = [FayingError("a"), InputError("a"), ReadError("a"), NotConverged("a")]
+    for fault in (*plain, StudyFaults("study.toml", ["bolt: no", "law: no"])):
+        again = pickle.loads(pickle.dumps(fault))
+        assert type(again) is type(fault)
+        assert str(again) == str(fault)
+        assert vars(again) == vars(fault)

@@ -133,7 +133,7 @@ def changed(text: str, path: KeyPath, value: str) -> str:
 def added(text: str, path: KeyPath) -> str:
     """Return the text with a new table. Raises InputError where it is there already, or no such table exists."""
     data = parsed(text)
-    _inner_of(path, data)
+    _inner_of(path)
     if _value_at(data, path) is not None:
         raise InputError(f"{name_of(path)} is there already")
     return edited(text, path, {})
@@ -275,7 +275,7 @@ def _keys(inner: Inner, table: Mapping[str, Any]) -> Declared:
 
 def _key_of(path: KeyPath, data: Mapping[str, Any]) -> Key:
     """The declaration of a key. Raises InputError where there is none."""
-    inner = _inner_of(path[:-1], data)
+    inner = _inner_of(path[:-1])
     if inner.free:
         return FREE
     table = _value_at(data, path[:-1])
@@ -286,7 +286,7 @@ def _key_of(path: KeyPath, data: Mapping[str, Any]) -> Key:
     return found
 
 
-def _inner_of(path: KeyPath, data: Mapping[str, Any]) -> Inner:
+def _inner_of(path: KeyPath) -> Inner:
     """The declaration of a table. Raises InputError where there is none."""
     inner = Inner(says="", keys=STUDY)
     for one in path:

@@ -147,7 +147,7 @@ def _expected(case: AsperityCase, greatest: float) -> tuple[float, float]:
                 f"force {greatest:.6g} N would press the cap {top:.3g} m, more than its height {h_a:.6g} m; give less"
             )
         return radius, top
-    radius = expected_radius(R, h_a, greatest, E_star, hardness, 0.454 + 0.41 * (weakest or cap).nu)
+    radius = expected_radius(R, greatest, E_star, hardness, 0.454 + 0.41 * (weakest or cap).nu)
     if not case.substrate.is_rigid:
         radius /= sqrt(1 + 0.75 * cap.E / case.substrate.E * sqrt(greatest / h_a))  # what the substrate gives way
     return radius, greatest

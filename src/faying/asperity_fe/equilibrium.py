@@ -32,10 +32,10 @@ class CapEquilibrium:
 
 
 class CapSolver:
-    """Solves with the tangents of one body; the symbolic part of the factorisation is done once."""
+    """Solves with tangents of one pattern; the symbolic part of the factorisation is done once."""
 
-    def __init__(self, body: Body, name: str | None = None) -> None:
-        self._body, self._name = body, name
+    def __init__(self, name: str | None = None) -> None:
+        self._name = name
         self._factor: Repeatable | None = None
         self.factorisations = 0
 

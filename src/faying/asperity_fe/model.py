@@ -69,7 +69,7 @@ class CapModel:
     @cached_property
     def factors(self) -> CapSolver:
         """The factorisations of this model's tangents."""
-        return CapSolver(self.body, self.solver)
+        return CapSolver(self.solver)
 
     def room(self, displacement: float) -> Array:
         """How far each surface node may rise before the plane stops it [m]."""
@@ -201,9 +201,7 @@ def build(
     )
 
 
-def expected_radius(
-    R: float, h_a: float, displacement: float, E_star: float, hardness: float | None, K: float
-) -> float:
+def expected_radius(R: float, displacement: float, E_star: float, hardness: float | None, K: float) -> float:
     """Contact radius to mesh for [m]: Hertz's, growing to that of the truncated sphere as the cap turns plastic."""
     truncated = sqrt(2 * R * displacement - displacement**2)
     if hardness is None:

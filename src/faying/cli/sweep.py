@@ -24,7 +24,6 @@ from faying.text import json_text
 @click.option("--out", type=PATH, help="NetCDF file (default: sweep.nc in the folder that run writes to).")
 @click.option("--tolerance", type=float, default=4e-6, show_default=True, help="Relative error of a frequency.")
 @click.option("--jobs", type=click.IntRange(1, 1024), default=1, show_default=True, help="Processes on this machine.")
-@click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option("--plot", type=FILE, help="Draw one axis or two (svg, png, pdf).")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary as JSON.")
 @progress_options
@@ -34,7 +33,6 @@ def command(
     out: Path | None,
     tolerance: float,
     jobs: int,
-    dask: str | None,
     plot: Path | None,
     as_json: bool,
     progress: Form | None,
@@ -55,7 +53,7 @@ def command(
     plan = Study.read(study)
     out = out or plan.results / "sweep.nc"
     with new_folder(out.parent, "give another file with --out"), Shown("sweep", progress) as report:
-        done = sweep(plan, axes, out, tolerance=tolerance, jobs=jobs, dask=dask, report=report)
+        done = sweep(plan, axes, out, tolerance=tolerance, jobs=jobs, report=report)
     summary = done.to_dict()
     if plot:
         summary["plot"] = str(save(drawing.figure(done), plot))

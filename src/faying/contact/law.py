@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.checks import flag
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law_figure import law_plot
 from faying.contact.measured_range import MeasuredRange
 from faying.contact.parameter import FILE, Parameter, checked, checked_all
 from faying.contact.response import Response
-from faying.contact.table import PressureTable
 from faying.errors import FayingError, InputError, NotConverged, shown
 from faying.materials import ContactPair
 from faying.style import Summary
@@ -34,7 +32,6 @@ Kind = TypeVar("Kind")
 
 TABLE_POINTS = 500
 # from this many pressures on, at_pressure reads the checked table unless asked to be exact
-TABLE_FROM = 20_000
 
 
 def require(law: str, good: bool, text: str) -> None:
@@ -255,16 +252,12 @@ class ContactLaw(Summary, ABC):
         """The least pressure above 0 that the law resolves [Pa]."""
         return float(np.exp(self._grid[1][0]))
 
-    def at_pressure(self, pressure: ArrayLike, *, exact: bool | None = None) -> Response:
+    def at_pressure(self, pressure: ArrayLike) -> Response:
         """Return the response at nominal pressures, any shape: numbers in Pa, or text such as "5 MPa".
 
-        exact=True inverts every pressure to 1e-12; exact=False reads a table that is made once and checked to 1e-6 of
-        every quantity; None inverts up to 20,000 pressures and reads the table beyond. At zero pressure nothing
-        touches: every quantity is 0. Raises InputError for NaN or negative pressures and for those above
-        `greatest_pressure` or below the least that the law resolves.
+        At zero pressure nothing touches: every quantity is 0. Raises InputError for NaN or negative pressures and for
+        those above `greatest_pressure` or below the least that the law resolves.
         """
-        if exact is not None:
-            flag(exact, "exact")
         p = checked(pressure, name="pressure", unit="Pa", zero=True)
         if p.size and p.max() > self.greatest_pressure * (1 + 1e-12):
             raise InputError(
@@ -272,11 +265,10 @@ class ContactLaw(Summary, ABC):
                 f"{self.greatest_pressure:.4g} Pa; lower the load or widen the joint"
             )
         flat = p.ravel()
-        read = self._pressure_table.at if exact is False or (exact is None and p.size > TABLE_FROM) else self._exact
         open_points = flat == 0
         if not open_points.any():
-            return read(flat).reshaped(p.shape)
-        at = read(np.where(open_points, self.greatest_pressure, flat))
+            return self._exact(flat).reshaped(p.shape)
+        at = self._exact(np.where(open_points, self.greatest_pressure, flat))
         arrays = {name: np.where(open_points, 0.0, value) for name, value in at.quantities().items()}
         reasons = {name: mask & ~open_points for name, mask in at.reasons.items()}
         return replace(at, reasons=reasons, **arrays).reshaped(p.shape)
@@ -284,11 +276,6 @@ class ContactLaw(Summary, ABC):
     def _exact(self, pressure: Array) -> Response:
         """Response at flat positive pressures within the law, each inverted."""
         return replace(self.at_closure(self._closure_at(pressure)), pressure=pressure.copy())
-
-    @cached_property
-    def _pressure_table(self) -> PressureTable:
-        least, greatest = np.exp(self._grid[1][[0, -1]])
-        return PressureTable(self._exact, float(least), float(greatest))
 
     def _closure_at(self, pressure: Array) -> Array:
         """Invert pressures (flat, positive, within the law) for the closure variable."""

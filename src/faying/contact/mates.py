@@ -340,33 +340,6 @@ class Mates(Summary):
         return comparison_plot(self.comparison(pressure, laws), quantity, title=self.line, ax=ax)
 
 
-def law_for(
-    *,
-    scan: Scan | Profile,
-    pair: Materials,
-    counter: Counter = "same",
-    model: str = AUTO,
-    cache: str | Path | None = None,
-) -> ContactLaw:
-    """Return the contact law of a joint from the scan of a face: `Mates(scan, materials=pair).law(model)`.
-
-    Args:
-        scan: of one face, as `read_scan` gives it.
-        pair: the materials that meet; one name for both.
-        counter: the other face: its scan; "same", statistically alike but unrelated; or "smooth".
-        model: a law by name, or "auto": the half-space contact of the scan where it resolves the contact, else the
-            analytic law nearest to it.
-        cache: folder that keeps solved contacts; None keeps nothing.
-
-    Returns:
-        The law. `Mates.choose` gives the reason as well.
-
-    Raises:
-        InputError: for unknown names, and for scans from which the law cannot be made.
-    """
-    return Mates(scan, materials=pair, other=counter, cache=cache).law(model)
-
-
 def pair_of(materials: object) -> ContactPair:
     """The pair of one material for both faces, of two, or as it is; InputError for anything else."""
     if isinstance(materials, ContactPair):

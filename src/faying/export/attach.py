@@ -152,7 +152,7 @@ def attach(
     else:
         mesh = mesh_of(geometry)
     interface = _interface(mesh, faces, search, any_size, unit)
-    materials = _materials(study, mesh, faces)
+    materials = _materials(study, mesh)
     notes = [*(note.text for note in mesh.notes), *_apart(mesh, faces, interface)]
     if solving:
         law, at_points, origin = _solved(moved, mesh, faces, preload)
@@ -260,7 +260,7 @@ def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> Iterator
         )
 
 
-def _materials(study: Study, mesh: Mesh, faces: tuple[str, str]) -> dict[str, Material]:
+def _materials(study: Study, mesh: Mesh) -> dict[str, Material]:
     """Material of every part: by the study's name for it, or the only one that the study uses."""
     used = set(study.parts.values())
     out = {}

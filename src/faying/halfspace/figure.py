@@ -17,7 +17,7 @@ def _extent(contact: ContactMaps) -> tuple[list[float], str]:
     return [0.0, width * factor, 0.0, height * factor], unit
 
 
-def _frame(ax: Any, contact: ContactMaps, unit: str, title: str) -> None:
+def _frame(ax: Any, unit: str, title: str) -> None:
     ax.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]", title=title)
     ax.set_aspect("equal")
 
@@ -58,7 +58,7 @@ def contact_map(ax: Any, contact: ContactMaps, *, pixels: int = 1200) -> Any:
     handles = [Patch(facecolor=c, edgecolor="0.5", label=f"{name} {100 * share:.3g} %") for name, c, share in shown]
     place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.24)}
     ax.legend(handles=handles, ncols=2, handlelength=1.2, **place)
-    _frame(ax, contact, unit, f"contact at {contact.pressure * 1e-6:.4g} MPa")
+    _frame(ax, unit, f"contact at {contact.pressure * 1e-6:.4g} MPa")
     return ax
 
 
@@ -78,7 +78,7 @@ def pressure_map(ax: Any, contact: ContactMaps, *, pixels: int = 1200) -> Any:
         interpolation="nearest",
     )
     ax.figure.colorbar(drawn, ax=ax, label="pressure [MPa]", shrink=0.8)
-    _frame(ax, contact, unit, f"pressure, mean {contact.pressure * 1e-6:.4g} MPa")
+    _frame(ax, unit, f"pressure, mean {contact.pressure * 1e-6:.4g} MPa")
     return ax
 
 

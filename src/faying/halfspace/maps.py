@@ -13,7 +13,7 @@ from faying.style import Summary
 from faying.typing import Array, Mask
 from faying.units import show
 
-OPEN, ELASTIC, AT_HARDNESS = 0, 1, 2
+OPEN, AT_HARDNESS = 0, 2  # and 1 between
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

@@ -439,19 +439,6 @@ def _halved(h: Array) -> Array:
     return h
 
 
-def refined_map(h: Array, shape: tuple[int, ...]) -> Array:
-    """The same waves on more points, a map that repeats: cells of both maps cover the same area."""
-    rows, columns = h.shape
-    spectrum = np.fft.fft2(h)
-    k = np.fft.fftfreq(rows, 1 / rows), np.fft.fftfreq(columns, 1 / columns)
-    # the middle of the first fine cell lies half a coarse and half a fine cell before that of the first coarse one
-    shift = [(1 / (2 * fine) - 1 / (2 * coarse)) for fine, coarse in zip(shape, h.shape, strict=True)]
-    spectrum = spectrum * np.exp(2j * np.pi * (k[0][:, None] * shift[0] + k[1][None, :] * shift[1]))
-    fine = np.zeros(shape, dtype=complex)
-    fine[np.ix_(k[0].astype(int), k[1].astype(int))] = spectrum
-    return np.asarray(np.fft.ifft2(fine).real) * (fine.size / h.size)
-
-
 def spread_map(x: Array, shape: tuple[int, ...]) -> Array:
     """Return a map on other points: every fine cell takes the value of the coarse cell that holds its middle."""
     rows, columns = (((np.arange(n) + 0.5) * (m / n)).astype(int) for n, m in zip(shape, x.shape, strict=True))

@@ -93,7 +93,6 @@ def identify(
     seed: int = 0,
     count: int = COUNT,
     jobs: int = 1,
-    dask: str | None = None,
     out: str | Path | None = None,
     report: Report | None = None,
 ) -> Identification:
@@ -109,7 +108,6 @@ def identify(
         seed: of all random numbers, 0 or more.
         count: samples of the posterior, 100 or more.
         jobs: processes on this machine.
-        dask: address of a Dask scheduler, in place of processes.
         out: file to write, ending in .nc; finished work is saved next to it, and the same call resumes there.
         report: told what is done, how much of it, and of how much.
 
@@ -137,7 +135,7 @@ def identify(
     file = None if out is None else Path(out)
     mark = fingerprint(study, left, seed, count, LIMIT)
     with SampleStore(file, mark, what="identification") as store:
-        found = _identified(study, left, seed=seed, count=count, jobs=jobs, dask=dask, store=store, report=report)
+        found = _identified(study, left, seed=seed, count=count, jobs=jobs, store=store, report=report)
         if file is not None:
             found.save(file)
         store.finish()
@@ -160,7 +158,6 @@ def _identified(
     seed: int,
     count: int,
     jobs: int,
-    dask: str | None,
     store: SampleStore,
     report: Report | None,
 ) -> Identification:
@@ -168,7 +165,7 @@ def _identified(
     assert test is not None
     _check_laws(study, choice)
     stage, ensemble = _Stage(report), Ensemble.of(study, 8, seed)
-    reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=stage, store=store)
+    reduced = Reduced(ensemble, jobs=jobs, report=stage, store=store)
     losses = None
     if test.losses is not None:
         losses = Losses(

@@ -39,7 +39,6 @@ def predict(
     seed: int = 0,
     *,
     jobs: int = 1,
-    dask: str | None = None,
     out: str | Path | None = None,
     report: Report | None = None,
     backbones: int = 0,
@@ -53,7 +52,6 @@ def predict(
         samples: points of Sobol's sequence, 8 to 1,000,000; powers of 2 fill the space most evenly.
         seed: of the points, 0 or more.
         jobs: processes on this machine.
-        dask: address of a Dask scheduler, in place of processes.
         out: file to write, ending in .nc; finished work is saved next to it, and the same call resumes there.
         report: called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
         backbones: samples, the first of all, in which the mode of [backbone] is followed, each in full: 8 to `samples`;
@@ -79,7 +77,7 @@ def predict(
         sliding(ensemble, choice, 0)  # raises, before the mesh
     file = None if out is None else Path(out)
     with SampleStore(file, fingerprint(study, samples, seed, LIMIT), what="prediction") as store:
-        reduced = Reduced(ensemble, jobs=jobs, dask=dask, report=report, store=store)
+        reduced = Reduced(ensemble, jobs=jobs, report=report, store=store)
         follower = None if choice is None else Follower.of(ensemble, choice, reduced)
         found = predicted(study, ensemble, reduced, reduced.rows(ensemble), seed)
         if follower is not None:

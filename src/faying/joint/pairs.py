@@ -123,7 +123,7 @@ def consistent(interface: Interface, springs: tuple[Array, Array, Array, Array])
     return NodePairs(
         first=first,
         second=second,
-        frames=_nearest_frames(interface, first, second),
+        frames=_nearest_frames(interface, first),
         stiffness=-blocks,
         loss=-lossy,
         area=nothing,
@@ -150,7 +150,7 @@ def _blocks(matrix: Any, wanted: tuple[Index, Index] | None = None) -> tuple[Ind
     return keys // n, keys % n, blocks
 
 
-def _nearest_frames(interface: Interface, first: Index, second: Index) -> Array:
+def _nearest_frames(interface: Interface, first: Index) -> Array:
     """Frame of a point of the interface that each pair shares, or of any point on a flat joint."""
     frames = interface.frames
     if np.abs(interface.normals - interface.normals[0]).max() < ROUNDING:

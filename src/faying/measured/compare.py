@@ -308,11 +308,11 @@ def _overlay(
     for pair in shared.measured:
         there = np.isfinite(predicted[pair])
         score[pair] = frac(shared.values[pair][there], predicted[pair][there])
-    notes += _kind_of_response(shared, predicted, full, model)
+    notes += _kind_of_response(shared, predicted, full)
     return shared, predicted, full, score
 
 
-def _kind_of_response(frf: FRF, predicted: Complex, full: Mask, model: ModelModes) -> list[str]:
+def _kind_of_response(frf: FRF, predicted: Complex, full: Mask) -> list[str]:
     """Say which of the model's FRFs are its full response, and where that ends."""
     measured = frf.measured
     count = sum(bool(full[pair]) for pair in measured)

@@ -40,7 +40,7 @@ class CondensedPart(Pardiso):
             super().__init__(matrix, single=single)
             return
         super().__init__(matrix, single=single, not_eliminated=touched)
-        self._values, self._kept = np.zeros(0, dtype=self._type), None  # the factor has taken what it needs
+        self._values = np.zeros(0, dtype=self._type)  # the factor has taken what it needs
 
     def forward(self, right: Array) -> Array:
         """Half of a solution (n, k) of right-hand sides (n, k): the touched rows hold what is left there."""

@@ -13,7 +13,6 @@ from faying.surface.fractal_fit import Facts, FractalFit, result
 from faying.surface.powerlaw import fit, fit_band, smearing, supported_band
 from faying.surface.scan import Scan
 from faying.surface.spectrum import Spectrum
-from faying.surface.summits import summits
 from faying.typing import Array
 
 
@@ -71,6 +70,13 @@ def _summed(a: tuple[Spectrum, Array], b: tuple[Spectrum, Array]) -> Spectrum:
     )
 
 
+def _moments(ready: Prepared) -> Array:
+    """Mean squares of height [m2], slope [-] and curvature [1/m2] of the profiles along x and y (3,)."""
+    z, (dx, dy) = ready.scan.heights, ready.scan.spacing
+    bends = [(np.diff(z, order, axis=1) / dx**order, np.diff(z, order, axis=0) / dy**order) for order in (1, 2)]
+    return np.array([z.var(), *(np.mean([np.mean(bend**2) for bend in both]) for both in bends)])
+
+
 def combine(
     scan_a: Scan, scan_b: Scan, *, degree: int = 1, convention: str = "yan-komvopoulos", gamma: float = 1.5
 ) -> Combined:
@@ -108,8 +114,7 @@ def combine(
         law, notes = fit_band(joint, low, high)
     except NotConverged as fault:
         raise InputError(f"the scans share too few wavelengths ({fault})") from fault
-    parts = [summits(r) for r in ready]
-    m0, m2, m4 = (sum(getattr(p, name) for p in parts) for name in ("m0", "m2", "m4"))
+    m0, m2, m4 = (float(moment) for moment in _moments(ready[0]) + _moments(ready[1]))
     # heights add as squares, lengths are those of the larger
     facts = Facts(
         Rq=m0**0.5,

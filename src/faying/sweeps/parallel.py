@@ -1,4 +1,4 @@
-"""Chunks of evaluations, here, in processes of this machine or on a Dask cluster."""
+"""Chunks of evaluations, here or in processes of this machine."""
 
 import os
 import threading
@@ -6,35 +6,25 @@ import time
 from collections.abc import Iterable, Sequence
 
 from faying.apart import in_processes
-from faying.sweeps.cluster import on_cluster
 from faying.sweeps.work import Rows, Work
 
 LOOK = 0.5  # s between two looks of a worker for its parent
 
 
-def each(
-    work: Work, chunks: Sequence[Sequence[int]], jobs: int, dask: str | None, what: str = "points"
-) -> Iterable[tuple[Sequence[int], Rows]]:
+def each(work: Work, chunks: Sequence[Sequence[int]], jobs: int) -> Iterable[tuple[Sequence[int], Rows]]:
     """Evaluate chunk by chunk and yield indices and rows as they come.
 
     Args:
         work: Makes the rows of some indices; it can be pickled where there are other processes.
         chunks: The indices of each chunk.
         jobs: Processes on this machine.
-        dask: Address of a Dask scheduler, in place of processes.
-        what: What the indices count, in messages.
 
     Raises:
-        InputError: No Dask scheduler answers, its package is missing, or its cluster has other versions.
-        FayingError: The cluster could not do the work, or a process was ended from outside.
+        FayingError: A process was ended from outside.
     """
-    if dask is None and jobs == 1:
+    if jobs == 1:
         for indices in chunks:
             yield indices, work(indices)
-        return
-    if dask is not None:
-        if chunks:
-            yield from on_cluster(work, chunks, dask, what)
         return
     calls = [(work, chunk) for chunk in chunks]
     yield from in_processes(_done, calls, jobs, initializer=end_with, initargs=(os.getpid(),))

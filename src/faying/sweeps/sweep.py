@@ -59,7 +59,6 @@ def sweep(
     *,
     tolerance: float = 4e-6,
     jobs: int = 1,
-    dask: str | None = None,
     report: Report | None = None,
 ) -> Sweep:
     """Evaluate a study at all combinations of the values of `axes` and write them to `out` (NetCDF).
@@ -72,7 +71,6 @@ def sweep(
         out: the file to write, ending in .nc.
         tolerance: relative error of a frequency that the bases are made for, 1e-10 to 1e-2.
         jobs: processes on this machine.
-        dask: address of a Dask scheduler, in place of processes.
         report: called with a stage, the points done, and their number; 0 of 0 while the bases grow.
 
     Returns:
@@ -96,7 +94,7 @@ def sweep(
         path = grid.winding()
         chunks = [c for c in (path[i : i + CHUNK] for i in range(0, len(path), CHUNK)) if not store.done[c].all()]
         work = partial(evaluate, model, trainer.builder)
-        for indices, rows in each(work, chunks, jobs, dask):
+        for indices, rows in each(work, chunks, jobs):
             store.keep(indices, rows)
             report("evaluations", int(store.done.sum()), grid.size)
         model = _enriched(model, trainer, store, trainer.builder)
@@ -156,7 +154,7 @@ def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, builder:
         model = trainer.model(worst.tolist())
         store.keep_model(model)
         before = store.rows["estimate"][far].copy()
-        for indices, rows in each(partial(evaluate, model, builder), [far.tolist()], 1, None):
+        for indices, rows in each(partial(evaluate, model, builder), [far.tolist()], 1):
             store.keep(indices, rows)
         if not np.any(store.rows["estimate"][far] < before):
             break

@@ -144,32 +144,20 @@ class VariantBuilder:
     # contact laws, and the laws of joints with their tables: along an axis of preload they stay the same
     _made: Lately[tuple[int, LawChoice, Surface], MadeLaw] = field(default_factory=Lately, repr=False, compare=False)
     _laid: Lately[tuple[MadeLaw, JointLaw], JointLaw] = field(default_factory=Lately, repr=False, compare=False)
-    # the last point asked for, with the design that it is of
-    _points: dict[int, tuple[Design, StudyVariant]] = field(default_factory=dict, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**vars(self), "_made": Lately(), "_laid": Lately(), "_points": {}}
-
-    def _point(self, index: int) -> StudyVariant:
-        """The study at one point: asked for three times in turn, made once."""
-        known = self._points.get(index)
-        if known is not None and known[0] is self.design:
-            return known[1]
-        point = self.design.point(index)
-        self._points.clear()
-        self._points[index] = self.design, point
-        return point
+        return {**vars(self), "_made": Lately(), "_laid": Lately()}
 
     def gaps(self, index: int) -> list[Array] | None:
         """Gap [m] (q,) of each joint at one point; None where no form varies."""
         if not self.places:
             return None
-        joints = self._point(index).study.joints
+        joints = self.design.point(index).study.joints
         return [place.gap(joint.form) for place, joint in zip(self.places, joints, strict=True)]
 
     def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
         """Law of each joint, force of each bolt [N] and friction of each joint at one point."""
-        point = self._point(index)
+        point = self.design.point(index)
         laws = [self._law(point, number) for number in range(len(point.surfaces))]
         return laws, point.forces, [joint.friction for joint in point.study.joints]
 
@@ -190,7 +178,7 @@ class VariantBuilder:
         parts = self.design.varied_parts
         if not parts:
             return None
-        found = self._point(index).scales
+        found = self.design.point(index).scales
         return [found.get(part, (1.0, 1.0)) for part in parts]
 
     def case(self, structure: Structure, index: int) -> Case:
@@ -198,7 +186,7 @@ class VariantBuilder:
 
         structure: that of the design, of whose parts E and density are scaled where they vary.
         """
-        point = self._point(index)
+        point = self.design.point(index)
         laws, forces, friction = self.laws(index)
         materials = structure.materials
         if point.scales:

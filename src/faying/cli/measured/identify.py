@@ -24,7 +24,6 @@ from faying.output.terminal import folded
     "--count", type=click.IntRange(100, 1_000_000), default=1000, show_default=True, help="Samples of the posterior."
 )
 @click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
-@click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option("--out", type=PATH, help="NetCDF file (default: identification.nc in the folder that run writes to).")
 @click.option("--plot", type=FILE, help="Draw priors, posteriors, frequencies.")
 @click.option("--html", type=FILE, help="Write table and figure as one page.")

@@ -18,7 +18,6 @@ from faying.files import new_folder, write_text
 )
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Seed of the samples.")
 @click.option("--jobs", type=click.IntRange(1, 1024), help="Processes on this machine [one for each core].")
-@click.option("--dask", metavar="ADDRESS", help="Evaluate on the Dask cluster of this scheduler.")
 @click.option("--out", type=PATH, help="NetCDF file (default: prediction.nc in the folder that run writes to).")
 @click.option("--plot", type=FILE, help="Draw the intervals (svg, png, pdf).")
 @click.option("--tornado", type=FILE, help="Draw the shares of the variance.")
@@ -38,7 +37,6 @@ def command(
     samples: int,
     seed: int,
     jobs: int | None,
-    dask: str | None,
     out: Path | None,
     plot: Path | None,
     tornado: Path | None,
@@ -85,7 +83,6 @@ def command(
             samples,
             seed,
             jobs=jobs or os.cpu_count() or 1,
-            dask=dask,
             out=out,
             report=report,
             backbones=backbones or 0,

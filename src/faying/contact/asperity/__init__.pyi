@@ -1,13 +1,11 @@
 # The public names of faying.contact.asperity; __init__.py imports each when it is first used.
 from .base import AsperityModel, AsperityResponse, models
-from .cap import cap_of_fractal, dimension_of_cap, roughness_of_cap
 from .chang_etsion_bogy import ChangEtsionBogy
 from .ghaednia import Ghaednia
 from .hertz import Hertz
 from .jackson_green import JacksonGreen
 from .jk import JK
 from .kogut_etsion import KogutEtsion
-from .layered import gao_modulus, king_modulus, mixed_modulus
 from .lin_lin import LinLin
 from .unloading import Brake, EtsionKligermanKadin, load_index
 from .zhao_maietta_chang import ZhaoMaiettaChang
@@ -27,12 +25,6 @@ __all__ = [
     "KogutEtsion",
     "LinLin",
     "ZhaoMaiettaChang",
-    "cap_of_fractal",
-    "dimension_of_cap",
-    "gao_modulus",
-    "king_modulus",
     "load_index",
-    "mixed_modulus",
     "models",
-    "roughness_of_cap",
 ]

@@ -19,7 +19,7 @@ from faying.contact.pressure_series import PressureSeries, cached, cached_number
 from faying.errors import InputError, shown
 from faying.halfspace.sized import solve_with_size
 from faying.halfspace.solution import HalfSpaceContact
-from faying.halfspace.solve import halved_map, refined_map, solve_half_space
+from faying.halfspace.solve import solve_half_space
 from faying.hardness import VickersHardness
 from faying.materials import ContactPair
 from faying.typing import Array
@@ -360,36 +360,6 @@ class HalfSpace(ContactLaw):
                 "small spots are harder, so that frequencies may be a tenth too high: give brinell of the material"
             )
         return tuple(out)
-
-    def resolution_error(self, pressure: float) -> dict[str, float]:
-        """Relative change of area, k_n and k_t when the scan is halved in points each way [-].
-
-        The scan's own error is of the same order where the change is small, and the answer rests on roughness that
-        the scan does not resolve where it is not.
-        """
-        heights, spacing = halved_map(np.asarray(self.scan.heights), self.scan.spacing)
-        fine = self._numbers(self.contact_at(pressure))
-        coarse = self._numbers(self._solve(heights, spacing, pressure))
-        return {name: coarse[name] / fine[name] - 1 for name in ("area", "k_n", "k_t")}
-
-    def resolution(self, pressure: float) -> dict[str, float]:
-        """Split the change of k_n from half of the points to all into its two causes [-], at one pressure [Pa].
-
-        "numerical": the same waves on twice as many points each way; "band": the shorter waves that only the finer
-        map has. Both as a change of ln k_n on unloading; the error of the scan itself is of the same order.
-        """
-        heights, spacing = np.asarray(self.scan.heights, dtype=float), self.scan.spacing
-        coarse, coarse_spacing = halved_map(heights, spacing)
-        maps = {
-            "coarse": (coarse, coarse_spacing),
-            "refined": (refined_map(coarse, heights.shape), spacing),
-            "fine": (heights, spacing),
-        }
-        k_n = {name: self._solve(*on, pressure).normal_stiffness(loading=False) for name, on in maps.items()}
-        return {
-            "numerical": float(np.log(k_n["refined"] / k_n["coarse"])),
-            "band": float(np.log(k_n["fine"] / k_n["refined"])),
-        }
 
 
 def _check_map(scan: object) -> None:

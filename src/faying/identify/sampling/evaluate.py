@@ -165,7 +165,7 @@ class Reduced:
 
     Args:
         ensemble: The samples.
-        jobs, dask: Processes on this machine, or the address of a Dask scheduler.
+        jobs: Processes on this machine.
         report: Called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
         store: Keeps bases and samples on disk, so that interrupted work goes on; None keeps nothing.
     """
@@ -175,11 +175,10 @@ class Reduced:
         ensemble: Ensemble,
         *,
         jobs: int = 1,
-        dask: str | None = None,
         report: Report | None = None,
         store: SampleStore | None = None,
     ) -> None:
-        self.jobs, self.dask = jobs, dask
+        self.jobs = jobs
         self.report: Report = report or silent
         self.report("mesh", 0, 0)
         inputs = ensemble.inputs
@@ -294,7 +293,7 @@ class Reduced:
             work = Evaluator(model=self.model.grouped(), builder=builder, seen=self.seen)
             self._work[law] = work.with_median(law)
         work = replace(self._work[law], builder=builder, test=ensemble.study.test)
-        return each(work.rows, chunks, self.jobs, self.dask, "samples")
+        return each(work.rows, chunks, self.jobs)
 
 
 def _all_loads(ensemble: Ensemble, samples: Iterable[int]) -> list[int]:

@@ -136,7 +136,7 @@ class Follower:
         done = {sample: rows for sample, rows in kept.items() if rows is not None}
         left = [[sample] for sample in range(count) if sample not in done]
         reduced.report("backbones", len(done), count)
-        for (sample,), rows in each(self.rows, left, reduced.jobs, reduced.dask, "samples"):
+        for (sample,), rows in each(self.rows, left, reduced.jobs):
             reduced.store.keep_rows("backbone", sample, rows)
             done[sample] = rows
             reduced.report("backbones", len(done), count)
