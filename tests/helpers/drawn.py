@@ -130,6 +130,20 @@ def countersunk(path):
     return _write(path, **parts), expected
 
 
+def sunk_in_a_sheet(path):
+    """Two countersunk M5 in a sheet of 2.5 mm, of whose holes the countersinks leave 0.05 mm, one with a nut."""
+    occ, _ = _shapes()
+    parts = _plates((5.2, 5.2), (3, 2.5))
+    for k, place in enumerate(BOTH, 1):
+        cone = occ.WorkPlane(occ.Axes(occ.Pnt(*place, 5.5), n=occ.Y, h=occ.X)).MoveTo(0, 0).LineTo(5.05, 0)
+        cone = cone.LineTo(2.6, 2.45).LineTo(0, 2.45).Close().Face().Revolve(occ.Axis(occ.Pnt(*place, 0), occ.Z), 360)
+        parts["plate b"] = parts["plate b"] - cone
+        parts[f"sunk {k}"] = screw(place, 5.1, 5, 14, ("sunk", 9.3))
+    parts["nut"] = nut(A, -4.7, 5, 4.7, 8)
+    sunk = Drawn(size=5, ring=(5.2, 9.3), says="its hole of 5.2 mm is none of ISO 273")
+    return _write(path, **parts), [sunk, sunk]
+
+
 def mixed(path):
     """One M10 drawn with its nut, one bare hole of 11 mm."""
     parts = _plates((11, 11), (12, 12))
@@ -253,6 +267,7 @@ MADE = {
         ring_nuts,
         socket_in_thread,
         countersunk,
+        sunk_in_a_sheet,
         mixed,
         both_sides,
         one_axis,

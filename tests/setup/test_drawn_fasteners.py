@@ -12,7 +12,7 @@ from tests.helpers import assemblies, drawn
 from tests.helpers.proposed import proposed
 
 # N, of class 8.8: 0.9 of 640 MPa, 660 above M16, in tension and torsion at mu_G = 0.12, over 1.28 (VDI 2230, R7)
-FORCES = {6: 7940, 8: 14500, 10: 23100, 12: 33600, 16: 63200, 42: 470000}
+FORCES = {5: 5620, 6: 7940, 8: 14500, 10: 23100, 12: 33600, 16: 63200, 42: 470000}
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +58,30 @@ def test_a_shaft_with_a_collar_asks_for_no_bolt(tmp_path):
     found = new.find(assemblies._write(tmp_path / "shaft.step", **parts, shaft=shaft))
     assert not found.bolts
     assert found.left_out == ("shaft",)
+
+
+def test_a_plate_with_a_boss_is_no_bolt(tmp_path):
+    """The boss of a motor's plate in the hole of its mount: both faces of the plate press, but away from each other."""
+    cylinder = assemblies._shapes()[1]
+    mount = assemblies._drilled(assemblies._box((-30, 30), (-30, 30), (30, 38)), [(0, 0)], 30, 38, 22)
+    plate = assemblies._box((-21, 21), (-21, 21), (20, 30)) + cylinder(0, 0, 30, 32, 11)
+    body = assemblies._box((-21, 21), (-21, 21), (0, 20))
+    found = new.find(assemblies._write(tmp_path / "motor.step", mount=mount, plate=plate, body=body))
+    assert not found.bolts
+    assert not found.left_out
+    assert {joint.faces[0].split(".")[0] for joint in found.joints} | {
+        joint.faces[1].split(".")[0] for joint in found.joints
+    } == {"mount", "plate", "body"}
+
+
+def test_a_tube_wider_than_any_pin_is_no_dowel(tmp_path):
+    """Two rings on a tube of 83 mm without play, as of a fuselage: ISO 2338 ends at 50 mm."""
+    cylinder = assemblies._shapes()[1]
+    parts = {f"ring {k}": cylinder(0, 0, 20 * k, 20 * k + 20, 60) - cylinder(0, 0, 0, 60, 41.5) for k in (0, 1)}
+    tube = cylinder(0, 0, -20, 60, 41.5) - cylinder(0, 0, -20, 60, 40)
+    found = new.find(assemblies._write(tmp_path / "tube.step", **parts, tube=tube))
+    assert not found.dowels
+    assert all("dowel" not in remark for remark in found.remarks)
 
 
 SLOW = [

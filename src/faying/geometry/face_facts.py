@@ -15,6 +15,7 @@ from faying.fe.overlap import overlap
 from faying.geometry.cad import ask_kernel, check_head, read_parts
 from faying.notes import Note
 from faying.style import Summary
+from faying.text import listed
 from faying.typing import Array, Index
 
 Point = tuple[float, float, float]
@@ -285,7 +286,11 @@ def _read_facts(
     cad = read_parts(path).without(leave_out)
     found = facts_of(cad.solids, cad.names, path.name, points, touching=touching)
     shared = tuple(shared_volumes(cad.solids, cad.names)) if overlaps else ()
-    return replace(found, overlaps=shared, notes=cad.notes)
+    bare = [f"{face.number} of {face.part!r}" for face in found.faces if not len(found.triangles(face))]
+    text = f"{path.name}: the CAD kernel does not follow the bounds of the faces {listed(bare, 4)}, so that nothing is "
+    text += "found there; repair them in the CAD program"
+    notes = (*cad.notes, *[Note(code="faces-without-triangles", text=text)] * bool(bare))
+    return replace(found, overlaps=shared, notes=notes)
 
 
 def facts_of(
@@ -359,6 +364,8 @@ def _distances(label: str, part: str, at: Sequence[float], solids: Sequence[Any]
 
 def shape_of(corners: Array, normals: Array, area: float) -> dict[str, Any]:
     """Kind of a face from its triangles (t, 3, 3) [m] and the unit normals at their corners, with its numbers."""
+    if not len(corners):  # the kernel gave up on the face
+        return {"kind": "other"}
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     total = cross.sum(axis=0)
     points = corners.reshape(-1, 3)

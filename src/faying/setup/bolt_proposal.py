@@ -93,9 +93,9 @@ class BoltProposal:
         return self.size is not None and is_graded(Thread.coarse(self.size * 1e-3))
 
 
-def grouped(names: Sequence[str]) -> str:
+def grouped(names: Sequence[str], kind: str = "bolt") -> str:
     """Names of bolts that are alike on one line: each of a few, else how many they are, the first and the last."""
-    return ", ".join(names) if len(names) <= MAX_NAMES else f"{len(names)} bolts ({names[0]} to {names[-1]})"
+    return ", ".join(names) if len(names) <= MAX_NAMES else f"{len(names)} {kind}s ({names[0]} to {names[-1]})"
 
 
 def rounded(value: float, digits: int, *, up: bool | None = None) -> float:

@@ -84,8 +84,9 @@ def drawn_bolts(facts: GeometryFacts, found: Sequence[FastenerForm], solid: Iter
 
 def _row(stem: FastenerForm, line: Line, rings: Sequence[FastenerForm], holes: Sequence[Bore]) -> _Row | None:
     """A stem with its holes, nuts and washers; None where it has no holes or ends."""
-    tubes = [line.span(stem.line, start, end) for _, start, end in stem.stems]
-    low, high = min(start for start, _ in tubes), max(end for _, end in tubes)
+    sunk = stem.head and -stem.head not in stem.bearings  # its head lies in the first hole
+    ends = [(stem.low, stem.high)] if sunk else [(start, end) for _, start, end in stem.stems]
+    low, high = line.span(stem.line, min(start for start, _ in ends), max(end for _, end in ends))
 
     def span(body: Bore | FastenerForm) -> tuple[float, float]:
         return line.span(body.line, body.low, body.high)

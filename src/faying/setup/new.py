@@ -212,7 +212,8 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         "[modes]\ncount = 10                     # elastic modes\n",
     ]
     assumed += _assumed_of_bolts(proposal.bolts, answers)
-    assumed += alike((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
+    pins = ((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
+    assumed += alike(pins, "dowel")
     assumed.append("no support: the structure is free")
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
@@ -412,12 +413,12 @@ def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[s
     return alike(remarks)
 
 
-def alike(remarks: Iterable[tuple[str, str]]) -> list[str]:
+def alike(remarks: Iterable[tuple[str, str]], kind: str = "bolt") -> list[str]:
     """What is said of each name; names of which one thing is said have one line."""
     groups: dict[str, list[str]] = {}
     for name, words in remarks:
         groups.setdefault(words, []).append(name)
-    return [f"{grouped(names)}: {words}" for words, names in groups.items()]
+    return [f"{grouped(names, kind)}: {words}" for words, names in groups.items()]
 
 
 def _millimetres(point: Sequence[float]) -> list[str]:
