@@ -189,6 +189,28 @@ class CadParts:
             raise InputError("geometry.leave_out leaves no part; take at least two out of it")
         return replace(self, solids=[self.solids[k] for k in left], names=[self.names[k] for k in left])
 
+    def united(self, groups: Sequence[Sequence[str]]) -> "CadParts":
+        """The same with the bodies of each group as one part, by the name of its first.
+
+        Raises InputError where there is no such part, or a group does not touch.
+        """
+        solids, gone = list(self.solids), set()
+        for group in groups:
+            missing = [part for part in group if part not in self.names]
+            if missing or not group:
+                raise InputError(
+                    f"geometry.unite names the part {[*missing, ''][0]!r}, which is not there; the parts are "
+                    f"{', '.join(map(repr, self.names))}"
+                )
+            first, *others = (self.names.index(part) for part in group)
+            one = list(sum((solids[k] for k in others), solids[first]).solids)
+            if len(one) != 1:
+                raise InputError(f"geometry.unite: {listed(map(repr, group))} do not touch; they make no single part")
+            solids[first] = one[0]
+            gone |= {*others}
+        left = [k for k in range(len(solids)) if k not in gone]
+        return replace(self, solids=[solids[k] for k in left], names=[self.names[k] for k in left])
+
 
 def read_parts(path: Path) -> CadParts:
     """Read the solids of a STEP file with their names: of the solid, else of its product, else part1, part2.

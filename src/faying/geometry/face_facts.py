@@ -257,6 +257,7 @@ def read_facts(
     overlaps: bool = False,
     touching: bool = True,
     leave_out: Sequence[str] = (),
+    unite: Sequence[Sequence[str]] = (),
 ) -> GeometryFacts:
     """Read what the faces of a STEP file are, in a process of its own.
 
@@ -266,13 +267,14 @@ def read_facts(
         overlaps: whether parts are searched for common volumes, which takes the kernel a while.
         touching: whether contacts are sought.
         leave_out: names of parts that are not read.
+        unite: names of bodies that are one part each.
 
     Raises:
         ReadError: the file cannot be read, or the kernel died on it.
-        InputError: there is no part to leave out, or none is left.
+        InputError: there is no part to leave out or to unite, or none is left.
     """
     check_head(path)
-    return ask_kernel(path, _read_facts, points or {}, overlaps, touching, leave_out)
+    return ask_kernel(path, _read_facts, points or {}, overlaps, touching, leave_out, unite)
 
 
 def _read_facts(
@@ -281,9 +283,10 @@ def _read_facts(
     overlaps: bool,
     touching: bool,
     leave_out: Sequence[str],
+    unite: Sequence[Sequence[str]],
 ) -> GeometryFacts:
     """The facts, in a process that has the kernel."""
-    cad = read_parts(path).without(leave_out)
+    cad = read_parts(path).united(unite).without(leave_out)
     found = facts_of(cad.solids, cad.names, path.name, points, touching=touching)
     shared = tuple(shared_volumes(cad.solids, cad.names)) if overlaps else ()
     bare = [f"{face.number} of {face.part!r}" for face in found.faces if not len(found.triangles(face))]

@@ -28,6 +28,8 @@ class DrawnBodies:
         volumes: [m3] that rest on the head's side and at the end: all but the shank between the seats; None at the end
             where neither a nut nor a thread is drawn.
         holes: part and number of the faces of all holes that are its own.
+        solid: those that are one body where the bolt is meshed, the stem and its nuts; empty in a thread, under a
+            countersunk head, or where a nut lacks or does not touch.
     """
 
     names: tuple[str, ...]
@@ -35,6 +37,7 @@ class DrawnBodies:
     shank: float | None
     volumes: tuple[float, float | None]
     holes: frozenset[tuple[str, int]]
+    solid: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

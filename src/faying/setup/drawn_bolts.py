@@ -20,6 +20,7 @@ from faying.units import show
 WIDEST = 2.0  # stem diameters: wider holes on its axis are not its own
 OUT = 0.3  # diameters: a stem that stands out of its last hole by more ends in a nut, drawn or not
 CLOSE = 1e-5  # m: surfaces that CAD draws as touching, with what programs round
+TIGHT = 1e-4  # of the radius: a nut that is wider by no more touches its stem
 SHALLOW = 0.8  # diameters of engagement below which a thread of the bolt's own strength strips (VDI 2230, R11)
 
 
@@ -165,9 +166,24 @@ def _bolt(facts: GeometryFacts, row: _Row) -> BoltProposal | None:
             shank=_plain(row, at[0], mouth if tapped else at[1]),
             volumes=(volumes[0], volumes[1] if tapped or row.nuts(1) else None),
             holes=frozenset(side for bore in row.bores for side in bore.sides),
+            solid=() if tapped or cone is not None else _solid(row),
         ),
         remark=_remark(row, size, tapped, engaged),
     )
+
+
+def _solid(row: _Row) -> tuple[str, ...]:
+    """Bodies that touch and are one meshed bolt: the stem and its nuts; none where a nut lacks or does not touch it."""
+    nuts = (*row.nuts(0), *row.nuts(1))
+
+    def touches(nut: FastenerForm) -> bool:
+        low, high = row.span(nut)
+        return any(
+            radius >= (1 - TIGHT) * nut.radius and start < low + CLOSE and end > high - CLOSE
+            for radius, start, end in row.stems
+        )
+
+    return (row.stem.part, *(nut.part for nut in nuts)) if row.nuts(1) and all(map(touches, nuts)) else ()
 
 
 def _is_thread(row: _Row) -> bool:

@@ -74,6 +74,11 @@ class Fasteners:
         return (*(names[0] for names in bodies), *(name for names in bodies for name in names[1:]))
 
     @property
+    def solid(self) -> tuple[tuple[str, ...], ...]:
+        """Bodies of each bolt that can be meshed as one part."""
+        return tuple(bolt.drawn.solid for bolt in self.bolts if bolt.drawn is not None and bolt.drawn.solid)
+
+    @property
     def remarks(self) -> list[str]:
         """What there is to say of the parts that are left out."""
         out = "Left out of the mesh (geometry.leave_out)"
