@@ -272,6 +272,13 @@ def test_names_of_part_files_count_as_windows_writes_them(tmp_path):
     assert [file.name for file in files_of(path)[1:]] == ["one-0.step", "one-1.step"]
 
 
+@pytest.mark.parametrize("suffix", [".STEP", ".Stp", ".p21"])
+def test_a_step_file_is_read_by_what_it_holds(tmp_path, suffix):
+    """SolidWorks writes .STEP, of which the kernel says that it cannot load it."""
+    path = assembly(tmp_path, ("lower", ""), ("upper", ""))
+    assert read_parts(path.rename(path.with_suffix(suffix))).names == ["lower", "upper"]
+
+
 def test_a_part_that_its_file_lacks_is_named(tmp_path):
     path = outside(assembly(tmp_path, ("lower", ""), ("upper", "")))
     (tmp_path / "one-1.step").unlink()

@@ -119,21 +119,20 @@ def _references(data: bytes) -> list[str]:
 
 
 def _gathered(files: Sequence[Path], texts: Sequence[str], folder: Path) -> Path:
-    """A STEP file whose parts lie beside it, since the kernel finds them by the very letters of their names alone.
+    """Copies of a STEP file and of those that it refers to, side by side, with the suffix that the kernel goes by.
 
     Args:
         files: it and all that it refers to; texts: of each.
-        folder: to copy them into, where there are several.
+        folder: where the copies go.
     """
-    if len(files) == 1:
-        return files[0]
     places = {file.resolve(): f"{number}.step" for number, file in enumerate(files)}
     for file, text in zip(files, texts, strict=True):
 
         def place(found: re.Match[str], file: Path = file) -> str:
             return f"'{places[named_by(file, decoded(found[1])).resolve()]}'"
 
-        here = _OUTSIDE.sub(lambda entity: _FILE.sub(place, entity[0]), text)
+        alone = len(files) == 1
+        here = text if alone else _OUTSIDE.sub(lambda entity: _FILE.sub(place, entity[0]), text)
         (folder / places[file.resolve()]).write_text(here, encoding="latin-1")
     return folder / places[files[0].resolve()]
 
