@@ -259,6 +259,8 @@ def _remark(row: _Row, size: float, tapped: bool, engaged: float | None) -> str:
     stem, one = row.stem, metric(size)
     head = "stud" if not stem.head else f"screw with a {_head_words(row)}"
     words = [f"M{size:g} by the part {stem.part!r}, a {head}"]
+    if abs(1e3 * stem.diameter - size) > NOMINAL:
+        words.append(f"its stem is drawn with {show(stem.diameter, 'm')}")
     nuts = row.nuts(0) + row.nuts(1)
     words += [f"nut {nut.part!r}" for nut in nuts]
     for washer in row.washers(0) + row.washers(1):
