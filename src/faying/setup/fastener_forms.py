@@ -218,7 +218,7 @@ def _threads(facts: GeometryFacts, faces: Sequence[FaceFacts], line: Line, *, in
     for face in faces:
         tris = facts.triangles(face)
         arm, depth = line.about(tris)
-        if face.normal is None and arm.min() >= CORE * arm.max():
+        if face.normal is None and len(tris) and arm.min() >= CORE * arm.max():
             middle = tris.mean(axis=1) - line.point
             normals = np.cross(tris[:, 1] - tris[:, 0], tris[:, 2] - tris[:, 0])
             if (np.sum(normals * (middle - np.outer(middle @ line.axis, line.axis))) < 0) == inside:
