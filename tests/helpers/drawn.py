@@ -142,7 +142,7 @@ def countersunk(path):
 
 
 def sunk_in_a_sheet(path):
-    """Two countersunk M5 in a sheet of 2.5 mm, of whose holes the countersinks leave 0.05 mm, one with a nut."""
+    """Two countersunk M5 in a sheet of 2.5 mm, of whose holes the countersinks leave 0.05 mm, with nuts."""
     occ, _ = _shapes()
     parts = _plates((5.2, 5.2), (3, 2.5))
     for k, place in enumerate(BOTH, 1):
@@ -150,7 +150,7 @@ def sunk_in_a_sheet(path):
         cone = cone.LineTo(2.6, 2.45).LineTo(0, 2.45).Close().Face().Revolve(occ.Axis(occ.Pnt(*place, 0), occ.Z), 360)
         parts["plate b"] = parts["plate b"] - cone
         parts[f"sunk {k}"] = screw(place, 5.1, 5, 14, ("sunk", 9.3))
-    parts["nut"] = nut(A, -4.7, 5, 4.7, 8)
+        parts[f"nut {k}"] = nut(place, -4.7, 5, 4.7, 8)
     sunk = Drawn(size=5, ring=(5.2, 9.3), says="its hole of 5.2 mm is none of ISO 273")
     return _write(path, **parts), [sunk, sunk]
 
