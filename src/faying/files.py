@@ -10,9 +10,9 @@ import signal
 import socket
 import tempfile
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import IO, Any
 from zipfile import ZipFile
 
@@ -309,6 +309,39 @@ def uninterrupted() -> Iterator[None]:
             signal.signal(which, signal.SIG_DFL if handler is None else handler)
     for number in came[:1]:
         signal.raise_signal(number)
+
+
+def named_by(path: Path, name: str) -> Path:
+    """The file that another file names, relative to its own folder.
+
+    Where there is none, the one whose name differs in upper and lower case alone, as on file systems of Windows, which
+    also write backslashes; of a full path, which another machine wrote, the file of that name in the folder.
+    """
+    named = there = path.parent / name
+    try:
+        if "\0" in name or named.exists():
+            return named
+        there, steps = path.parent, PureWindowsPath(name)
+        for step in (steps.name,) if steps.anchor else steps.parts:
+            others = there.iterdir() if there.is_dir() and not (there / step).exists() else ()
+            there = next((one for one in others if one.name.lower() == step.lower()), there / step)
+    except OSError:  # the name is too long, or a folder may not be read
+        return named
+    return there
+
+
+def named_files(path: Path, names: Callable[[bytes], Iterable[str]]) -> list[Path]:
+    """A file and those that it names, at any depth, whether they are there or not.
+
+    names: what a file names, from its bytes.
+    """
+    found = [path]
+    for file in found:  # those that it names come to the end
+        for name in names(file.read_bytes()) if file.is_file() else ():
+            one = named_by(file, name)
+            if "\0" not in name and one.resolve() not in {other.resolve() for other in found}:
+                found.append(one)
+    return found
 
 
 def end_of(path: Path) -> tuple[str, ...]:

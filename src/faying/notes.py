@@ -31,6 +31,7 @@ WRONG = frozenset(
         "no-answer",
         "load-opens",
         "bolt-loose",
+        "vibration-beyond",
     }
 )
 LIMITS = frozenset(
@@ -39,6 +40,7 @@ LIMITS = frozenset(
         "beyond-law",
         "level-damping",
         "no-level-answer",
+        "vibration-band",
         "no-level-damping",
         "window",
         "falls",

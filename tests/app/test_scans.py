@@ -2,6 +2,7 @@
 
 import json
 from base64 import b64decode
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -158,6 +159,29 @@ def test_the_server_gives_maps_and_lines(server, scanned):
     assert line["heights"] == pytest.approx(scanned[64], abs=1e-9)
     for wrong in ("map?name=wave.x3p&window=x", "line?name=wave.x3p&window=0,0,1,1&along=x&at=y", "map?name=no.x3p"):
         assert "fault" in json.loads(ask(server, f"api/{wrong}")[1])
+
+
+def test_one_of_several_maps_of_heights_is_named_on_the_page(browser, server, tmp_path):
+    """A container with heights of 1 and 3 um rms: the map that is named is read, drawn and looked at closely."""
+    pytest.importorskip("SurfaceTopography", reason="reads containers")
+    heights = spectral((64, 64), spacing=1e-6, D=2.3, Rq=1e-6, longest=3e-5, seed=1).heights * 1e6
+    lines = ["surfaces:", "- name: one", "  topographies:"]
+    with ZipFile(tmp_path / "two.zip", "w") as archive:
+        for name, factor in {"low": 1, "high": 3}.items():
+            file = f"    datafile: {{original: {name}.txt}}"
+            lines += [f"  - name: {name}", file, "    unit: um", "    size: [64, 64]"]
+            archive.writestr(f"{name}.txt", "\n".join(" ".join(map(str, factor * row)) for row in heights))
+        archive.writestr("meta.yml", "\n".join(lines) + "\n")
+    with page_at(browser, server) as page:
+        page.wait_for_selector("#scan-units:not([hidden])")
+        assert "holds 2 maps of heights" in page.inner_text("#scan-fault")
+        page.fill("#channel", "high")
+        page.click("#scan-again")
+        page.wait_for_selector("#scan-picture:not([hidden])")
+        page.wait_for_selector("#map:not([hidden])")
+        assert "64 x 64" in page.inner_text("#scan-facts")
+    low, high = (json.loads(ask(server, f"api/scan?name=two.zip&channel={one}")[1])["facts"] for one in ("low", "high"))
+    assert high["roughness"]["Rq"] == pytest.approx(3 * low["roughness"]["Rq"], rel=0.05)  # spikes differ
 
 
 LAWS = {

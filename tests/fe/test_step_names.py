@@ -6,7 +6,7 @@ import re
 import pytest
 
 import faying
-from faying.geometry.cad import kernel, read_parts
+from faying.geometry.cad import files_of, kernel, read_parts
 from faying.geometry.geometry import mesh_step
 from faying.geometry.products import decoded, read_products
 from faying.geometry.selectors import Selector
@@ -253,6 +253,30 @@ def test_parts_in_files_of_their_own_are_read_with_the_assembly(tmp_path):
     assert held.names == ["lower", "upper"]
     assert [solid.mass for solid in held.solids] == pytest.approx([4000, 4000])
     assert [solid.center.z for solid in held.solids] == pytest.approx([5, 15])
+
+
+def test_names_of_part_files_count_as_windows_writes_them(tmp_path):
+    """With backslashes, in capitals, with the folders of another machine; a drawing is no part."""
+    path = outside(assembly(tmp_path, ("lower", ""), ("upper", "")))
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "one-1.step").rename(tmp_path / "parts" / "one-1.step")
+    text = (
+        path.read_text()
+        .replace("'one-0.step'", r"'C:\\jobs\\One-0.STEP'")
+        .replace("'one-1.step'", r"'Parts\\one-1.step'")
+    )
+    path.write_text(text.replace("#980001=", "#980009=DOCUMENT_FILE('plan.pdf','',$,#980008,'',$);\n#980001="))
+    held = read_parts(path)
+    assert held.names == ["lower", "upper"]
+    assert [solid.center.z for solid in held.solids] == pytest.approx([5, 15])
+    assert [file.name for file in files_of(path)[1:]] == ["one-0.step", "one-1.step"]
+
+
+@pytest.mark.parametrize("suffix", [".STEP", ".Stp", ".p21"])
+def test_a_step_file_is_read_by_what_it_holds(tmp_path, suffix):
+    """SolidWorks writes .STEP, of which the kernel says that it cannot load it."""
+    path = assembly(tmp_path, ("lower", ""), ("upper", ""))
+    assert read_parts(path.rename(path.with_suffix(suffix))).names == ["lower", "upper"]
 
 
 def test_a_part_that_its_file_lacks_is_named(tmp_path):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from faying.geometry.face_facts import part_distance, read_facts
+from faying.geometry.face_facts import part_distance, read_facts, shape_of
 
 
 def written(path, *solids):
@@ -133,3 +133,8 @@ def test_a_cone_and_a_sphere_are_neither_plane_nor_cylinder(tmp_path):
     ball = next(iter(Sphere(Pnt(40, 0, 0), 5).solids))
     kinds = [face.kind for face in read_facts(written(tmp_path / "c.step", cone, ball)).faces]
     assert sorted(kinds) == ["other", "other", "plane", "plane"]
+
+
+def test_a_face_of_which_the_kernel_makes_no_triangles_is_of_no_kind():
+    """As of text on a part whose bounds do not close; a whole file was refused for one."""
+    assert shape_of(np.zeros((0, 3, 3)), np.zeros((0, 3, 3)), 7e-6) == {"kind": "other"}

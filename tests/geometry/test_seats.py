@@ -49,6 +49,12 @@ def test_no_lips_where_the_way_is_blocked_or_one_lip_lacks(tmp_path):
     assert not under(slot_of(tmp_path, narrow=True))
 
 
+def test_no_lips_where_another_part_lies_against_them(tmp_path):
+    """No nut finds room behind a face that is a joint."""
+    filling = box((0, -9, -20), (50, 9, -10), "filling")
+    assert not under(slot_of(tmp_path, filling))
+
+
 def test_a_countersink_is_a_cone_to_its_wide_end(tmp_path):
     facts = read_facts(assemblies.countersunk(tmp_path / "sunk.step"))
     bore = one_bore(facts, "plate")

@@ -59,6 +59,17 @@ def washer(place, low, sizes, *, split=False):
     return next(iter(ring.solids))
 
 
+def grooves(place, seat, d, pitch, count, flat=0.0):
+    """A thread as V-grooves one below the other, with crests of a flat width."""
+    occ, _ = _shapes()
+    profile = occ.WorkPlane(occ.Axes(occ.Pnt(*place, seat), n=occ.Y, h=occ.X)).MoveTo(0, 0).LineTo(d / 2, 0)
+    for k in range(count):
+        if flat:
+            profile = profile.LineTo(d / 2, k * pitch + flat)
+        profile = profile.LineTo(d / 2 - 0.6 * pitch, (k + 0.5) * pitch + flat / 2).LineTo(d / 2, (k + 1) * pitch)
+    return profile.LineTo(0, count * pitch).Close().Face().Revolve(occ.Axis(occ.Pnt(*place, 0), occ.Z), 360)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Drawn:
     """What a study must have of one bolt: size, head, tapped, ring [mm], washers, engaged [mm], words of its remark."""
@@ -128,6 +139,36 @@ def countersunk(path):
         Drawn(size=6, tapped=True, ring=(6.6, 15), engaged=12, says="a flange of 15 mm"),
     ]
     return _write(path, **parts), expected
+
+
+def sunk_in_a_sheet(path):
+    """Two countersunk M5 in a sheet of 2.5 mm, of whose holes the countersinks leave 0.05 mm, with nuts."""
+    occ, _ = _shapes()
+    parts = _plates((5.2, 5.2), (3, 2.5))
+    for k, place in enumerate(BOTH, 1):
+        cone = occ.WorkPlane(occ.Axes(occ.Pnt(*place, 5.5), n=occ.Y, h=occ.X)).MoveTo(0, 0).LineTo(5.05, 0)
+        cone = cone.LineTo(2.6, 2.45).LineTo(0, 2.45).Close().Face().Revolve(occ.Axis(occ.Pnt(*place, 0), occ.Z), 360)
+        parts["plate b"] = parts["plate b"] - cone
+        parts[f"sunk {k}"] = screw(place, 5.1, 5, 14, ("sunk", 9.3))
+        parts[f"nut {k}"] = nut(place, -4.7, 5, 4.7, 8)
+    sunk = Drawn(size=5, ring=(5.2, 9.3), says="its hole of 5.2 mm is none of ISO 273")
+    return _write(path, **parts), [sunk, sunk]
+
+
+def grooved(path):
+    """Two M8 without any plain shank, one whose nut has grooves, too; the hexagon one has no cylinder at all."""
+    parts = _plates((9, 9), (12, 12))
+    _, cylinder = _shapes()
+    threads = [grooves(place, 24, 8, 1.25, 32, flat) for place, flat in ((A, 0.15), (B, 0.0))]
+    heads = cylinder(*A, 24, 32, 6.5), hexagon(*B, 24, 29.12, 13)
+    for k, (thread, head) in enumerate(zip(threads, heads, strict=True), 1):
+        parts[f"bolt {k}"] = next(iter((thread + head).solids))
+    parts["nut 1"] = nut(A, -6.8, 8, 6.8, 13)
+    parts["nut 2"] = next(iter((hexagon(*B, -6.8, 0, 13) - grooves(B, 24, 8, 1.25, 32)).solids))
+    return _write(path, **parts), [
+        Drawn(size=8, head="socket", ring=(9, 13), says="nut 'nut 1'"),
+        Drawn(size=8, ring=(9, 13), says="nut 'nut 2'"),
+    ]
 
 
 def mixed(path):
@@ -253,6 +294,8 @@ MADE = {
         ring_nuts,
         socket_in_thread,
         countersunk,
+        sunk_in_a_sheet,
+        grooved,
         mixed,
         both_sides,
         one_axis,

@@ -41,10 +41,10 @@ def read_once(monkeypatch):
     """The facts of an unchanged file are those that were read."""
     kept = KEPT
 
-    def facts(path, *, points=None, overlaps=False, leave_out=()):
-        key = path, path.stat().st_mtime_ns, str(points), overlaps, leave_out
+    def facts(path, *, points=None, overlaps=False, leave_out=(), unite=()):
+        key = path, path.stat().st_mtime_ns, str(points), overlaps, leave_out, unite
         if key not in kept:
-            kept[key] = read_facts(path, points=points, overlaps=overlaps, leave_out=leave_out)
+            kept[key] = read_facts(path, points=points, overlaps=overlaps, leave_out=leave_out, unite=unite)
         return kept[key]
 
     monkeypatch.setattr("faying.setup.check.read_facts", facts)

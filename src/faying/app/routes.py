@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from faying.app.runs import Runs
     from faying.app.scans import OpenScan
 
+OF_SCAN = ("xy-unit", "z-unit", "size", "channel")  # of a request: how a scan is read, as options of commands
 # what may run, with the pictures that it draws for the page
 JOBS: dict[str, dict[str, str]] = {
     "run": {},
@@ -37,6 +38,11 @@ class Request:
     query: Mapping[str, str]
     body: BufferedIOBase
     size: int
+
+    @property
+    def of_scan(self) -> list[str]:
+        """Options of how a scan is read."""
+        return [f"--{key}={self.query[key]}" for key in OF_SCAN if key in self.query]
 
     def given(self, name: str) -> str:
         """A value of the query. Raises InputError where it is missing."""
@@ -157,16 +163,13 @@ class Session:
 
     def scan(self, request: Request) -> dict[str, Any]:
         """Roughness, D and G of a scan with its picture, as `faying surface` gives them."""
-        options = [f"--{key}={request.query[key]}" for key in ("xy-unit", "z-unit", "size") if key in request.query]
-        return self._pictured("surface", self._name(request, "name"), *options)
+        return self._pictured("surface", self._name(request, "name"), *request.of_scan)
 
     def laws(self, request: Request) -> dict[str, Any]:
         """The laws on a scan beside each other, as `faying law --all-models` gives them."""
         material = request.query.get("material", "45 steel")
-        name = self._name(request, "name")
-        return {
-            "facts": self._answer("law", f"--scan={name}", "--all-models", f"--material={material}", "--against=same")
-        }
+        scan = f"--scan={self._name(request, 'name')}", *request.of_scan
+        return {"facts": self._answer("law", *scan, "--all-models", f"--material={material}", "--against=same")}
 
     def map(self, request: Request) -> dict[str, Any]:
         """A window of a scan as a map."""
@@ -247,7 +250,7 @@ class Session:
         from faying.app.scans import OpenScan
 
         path = self.project.file(self._name(request, "name"))
-        units = tuple(request.query.get(key) for key in ("xy-unit", "z-unit", "size"))
+        units = tuple(request.query.get(key) for key in OF_SCAN)
         mark = (path.name, path.stat().st_mtime_ns, units)
         with self._reading:
             if self._open is None or self._open[0] != mark:

@@ -40,10 +40,12 @@ class OpenScan:
         self._spectrum: Spectrum | None = None
 
     @classmethod
-    def read(cls, file: Path, xy_unit: str | None, z_unit: str | None, size: str | None) -> "OpenScan":
+    def read(
+        cls, file: Path, xy_unit: str | None, z_unit: str | None, size: str | None, channel: str | None
+    ) -> "OpenScan":
         """Read a file as `faying surface` does. Raises ReadError and InputError as that."""
         given = lengths(size, name="size") if size else None
-        return cls(read_scan(file, xy_unit=xy_unit, z_unit=z_unit, size=given))
+        return cls(read_scan(file, xy_unit=xy_unit, z_unit=z_unit, size=given, channel=channel))
 
     def map(self, window: Window) -> dict[str, Any]:
         """Return mean heights in a window as bytes, row by row from least y, with their scale.

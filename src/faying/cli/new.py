@@ -17,6 +17,7 @@ from faying.text import json_text
 @click.option("--unit", help='Unit of a mesh file\'s coordinates, such as "mm".')
 @click.option("--scan", type=PATH, help="Scan of one face (default: a synthetic one of a fine finish).")
 @click.option("--out", type=PATH, default="study.toml", show_default=True, help="The study file.")
+@click.option("--mesh-bolts", is_flag=True, help="Mesh bolts that are drawn with their nuts (default: beams).")
 @click.option(
     "--yes",
     is_flag=True,
@@ -24,7 +25,9 @@ from faying.text import json_text
 )
 @click.option("--force", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found and written as JSON; asks nothing.")
-def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: bool, force: bool, as_json: bool) -> None:
+def command(
+    step: Path, unit: str | None, scan: Path | None, out: Path, mesh_bolts: bool, yes: bool, force: bool, as_json: bool
+) -> None:
     """Write a commented study of the part or assembly in FILE: joints, bolts, seats, mesh, and what to fill in.
 
     FILE is a STEP file, or a mesh of another program whose faces have names; its pretension sections become bolts.
@@ -34,7 +37,7 @@ def command(step: Path, unit: str | None, scan: Path | None, out: Path, yes: boo
     silent = yes or as_json
     if not silent and not sys.stdin.isatty():
         raise InputError("faying new asks questions and there is no terminal to ask; give --yes to assume the answers")
-    proposal = new.find(step, unit)
+    proposal = new.find(step, unit, mesh_bolts=mesh_bolts)
     answers = new.Answers(scan=scan) if silent else asked(proposal, scan)
     written = new.write(proposal, step, out, answers, force=force)
     click.echo(json_text(written.to_dict()) if as_json else "\n".join(new.summary(written, out)))

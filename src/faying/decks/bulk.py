@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.raw import UPRIGHT_FIRST, check_included, named_by, read_text
+from faying.decks.raw import UPRIGHT_FIRST, check_included, read_text
 from faying.decks.vocabulary import nastran_kind
 from faying.errors import ReadError
 from faying.fe.elements import SOLIDS
+from faying.files import named_by
 from faying.typing import Array
 
 COUNTS = {"CTETRA": (4, 10), "CHEXA": (8, 20), "CPENTA": (6, 15)}

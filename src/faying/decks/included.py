@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
-from faying.decks.raw import named_by
 from faying.file_kinds import ABAQUS, NASTRAN, kind_of
+from faying.files import named_files
 
 # *INCLUDE and data lines from INPUT=, a keyword that goes on over lines included; INCLUDE 'file' of bulk data
 _ABAQUS = re.compile(
@@ -15,11 +15,11 @@ _NASTRAN = re.compile(rb"^[ \t]*+INCLUDE[ \t]+['\"]?([^'\"\r\n$]+)", re.I | re.M
 
 def included(path: Path) -> tuple[Path, ...]:
     """Every file that a mesh file includes, at any depth, that is there; the reader tells what is not."""
-    files = [path] if kind_of(path) in (ABAQUS, NASTRAN) else []
-    for file in files:  # those that it includes come to the end
-        text = file.read_bytes()
-        for match in (*_ABAQUS.finditer(text), *_NASTRAN.finditer(text)):
-            one = named_by(file, match.group(1).decode(errors="replace").strip())
-            if "\0" not in str(one) and one.is_file() and one not in files and one.resolve() != path.resolve():
-                files.append(one)
-    return tuple(files[1:])
+    if kind_of(path) not in (ABAQUS, NASTRAN):
+        return ()
+    return tuple(file for file in named_files(path, _names)[1:] if file.is_file())
+
+
+def _names(text: bytes) -> list[str]:
+    found = (*_ABAQUS.finditer(text), *_NASTRAN.finditer(text))
+    return [one.group(1).decode(errors="replace").strip() for one in found]

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from faying.decks.deck import ContactProperty, JointDeck, grouped, real, reals
-from faying.decks.raw import check_included, named_by, read_text
+from faying.decks.raw import check_included, read_text
 from faying.errors import InputError, ReadError
+from faying.files import named_by
 from faying.typing import Array, Index
 
 DATA = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE"}

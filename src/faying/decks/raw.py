@@ -172,25 +172,6 @@ def read_text(path: Path, what: str) -> str:
         raise ReadError(f"cannot read the {what} {path}: {fault.strerror or fault}") from None
 
 
-def named_by(path: Path, name: str) -> Path:
-    """The file that a mesh file names, relative to its own folder.
-
-    Where there is none, the one whose name differs in upper and lower case alone, as on file systems of Windows, which
-    also write backslashes.
-    """
-    named = there = path.parent / name
-    try:
-        if "\0" in name or named.exists():
-            return named
-        there = path.parent
-        for step in Path(name.replace("\\", "/")).parts:
-            others = there.iterdir() if there.is_dir() and not (there / step).exists() else ()
-            there = next((one for one in others if one.name.lower() == step.lower()), there / step)
-    except OSError:  # the name is too long, or a folder may not be read
-        return named
-    return there
-
-
 def check_included(path: Path, seen: tuple[Path, ...], count: list[int]) -> None:
     """Count one more file of those that a file includes. Raises ReadError for too many, and for one in itself.
 

@@ -1,14 +1,17 @@
 """The CAD kernel, OpenCASCADE in netgen: how it is loaded, and what it leaves out of a STEP file."""
 
+import os
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
 from faying.apart import Died, apart
 from faying.errors import InputError, ReadError
 from faying.file_kinds import STEP, kind_held
+from faying.files import named_by, named_files
 from faying.geometry.products import Leaf, decoded, leaves, named_by_product, read_products
 from faying.notes import Note
 from faying.text import listed
@@ -18,7 +21,7 @@ _SOLID = re.compile(r"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\s*\(")
 # entities that name the file of a part, and the name in them
 _REFERRING = ("DOCUMENT_FILE", "APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", "EXTERNAL_SOURCE")
 _OUTSIDE = re.compile(rf"\b(?:{'|'.join(_REFERRING)})\s*\([^;]*;")
-_FILE = re.compile(r"'((?:[^'\\/]|'')[^']*\.(?:stp|step|p21))'", re.IGNORECASE)
+_FILE = re.compile(r"'((?:[^']|'')+\.(?:stp|step|p21))'", re.IGNORECASE)
 
 NO_NAMES = ("", "NONE")  # what exporters write for want of a name
 # what OpenCASCADE links against; wheels do not bring them
@@ -96,31 +99,54 @@ def files_of(path: Path) -> tuple[Path, ...]:
 
     Raises ReadError, with the name, where one of them is not there.
     """
-    found = [path]
-    for file in found:
-        data = file.read_bytes()
-        if not any(word.encode() in data for word in _REFERRING):  # most have none, which this tells ten times sooner
-            continue
-        text = data.decode("latin-1")
-        named = {decoded(name) for entity in _OUTSIDE.findall(text) for name in _FILE.findall(entity)}
-        found += [other for name in sorted(named) if (other := file.parent / name) not in found]
-        missing = [str(other.relative_to(path.parent)) for other in found if not other.is_file()]
-        if missing:
-            solids = "" if _SOLID.search(text) else " and holds no solid of its own"
-            raise ReadError(
-                f"{file} refers to {listed(missing)} for parts{solids}; put the missing files where they are named, or "
-                "export the assembly as one file"
-            )
-    return tuple(found)
+    files = named_files(path, lambda data: map(decoded, _references(data)))
+    missing = [os.path.relpath(file, path.parent) for file in files[1:] if not file.is_file()]
+    if missing:
+        solids = "" if _SOLID.search(path.read_text(encoding="latin-1")) else " and holds no solid of its own"
+        raise ReadError(
+            f"{path} refers to {listed(missing)} for parts{solids}; put the missing files where they are named, or "
+            "export the assembly as one file"
+        )
+    return tuple(files)
+
+
+def _references(data: bytes) -> list[str]:
+    """Names of files of parts in a STEP file, as it writes them; those of its other documents are not."""
+    if not any(word.encode() in data for word in _REFERRING):  # most have none, which this tells ten times sooner
+        return []
+    entities = _OUTSIDE.findall(data.decode("latin-1"))
+    return sorted({name for entity in entities for name in _FILE.findall(entity)})
+
+
+def _gathered(files: Sequence[Path], texts: Sequence[str], folder: Path) -> Path:
+    """Copies of a STEP file and of those that it refers to, side by side, with the suffix that the kernel goes by.
+
+    Args:
+        files: it and all that it refers to; texts: of each.
+        folder: where the copies go.
+    """
+    places = {file.resolve(): f"{number}.step" for number, file in enumerate(files)}
+    for file, text in zip(files, texts, strict=True):
+
+        def place(found: re.Match[str], file: Path = file) -> str:
+            return f"'{places[named_by(file, decoded(found[1])).resolve()]}'"
+
+        alone = len(files) == 1
+        here = text if alone else _OUTSIDE.sub(lambda entity: _FILE.sub(place, entity[0]), text)
+        (folder / places[file.resolve()]).write_text(here, encoding="latin-1")
+    return folder / places[files[0].resolve()]
 
 
 def _leaves(path: Path) -> list[Leaf]:
     """The placed shapes of a STEP file and of those that it refers to."""
     check_head(path)
-    texts = [file.read_text(encoding="latin-1") for file in files_of(path)]
+    files = files_of(path)
+    texts = [file.read_text(encoding="latin-1") for file in files]
     geometry, written = kernel().OCCGeometry, sum(len(_SOLID.findall(text)) for text in texts)
     try:
-        found = leaves(geometry(str(path)).GetAssemblyTree(), read_products(texts[0]))
+        with TemporaryDirectory() as folder:
+            shapes = geometry(str(_gathered(files, texts, Path(folder))))
+        found = leaves(shapes.GetAssemblyTree(), read_products(texts[0]))
     except Exception as fault:
         if written:  # the kernel has many words for a file without any shape
             raise ReadError(f"{path} cannot be read as STEP ({fault}); export it again from the CAD program") from None
@@ -161,6 +187,28 @@ class CadParts:
         if not left:
             raise InputError("geometry.leave_out leaves no part; take at least two out of it")
         return replace(self, solids=[self.solids[k] for k in left], names=[self.names[k] for k in left])
+
+    def united(self, groups: Sequence[Sequence[str]]) -> "CadParts":
+        """The same with the bodies of each group as one part, by the name of its first.
+
+        Raises InputError where there is no such part, or a group does not touch.
+        """
+        solids, gone = list(self.solids), set()
+        for group in groups:
+            missing = [part for part in group if part not in self.names]
+            if missing or not group:
+                raise InputError(
+                    f"geometry.unite names the part {[*missing, ''][0]!r}, which is not there; the parts are "
+                    f"{', '.join(map(repr, self.names))}"
+                )
+            first, *others = (self.names.index(part) for part in group)
+            one = list(sum((solids[k] for k in others), solids[first]).solids)
+            if len(one) != 1:
+                raise InputError(f"geometry.unite: {listed(map(repr, group))} do not touch; they make no single part")
+            solids[first] = one[0]
+            gone |= {*others}
+        left = [k for k in range(len(solids)) if k not in gone]
+        return replace(self, solids=[solids[k] for k in left], names=[self.names[k] for k in left])
 
 
 def read_parts(path: Path) -> CadParts:

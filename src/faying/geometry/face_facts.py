@@ -15,6 +15,7 @@ from faying.fe.overlap import overlap
 from faying.geometry.cad import ask_kernel, check_head, read_parts
 from faying.notes import Note
 from faying.style import Summary
+from faying.text import listed
 from faying.typing import Array, Index
 
 Point = tuple[float, float, float]
@@ -256,6 +257,7 @@ def read_facts(
     overlaps: bool = False,
     touching: bool = True,
     leave_out: Sequence[str] = (),
+    unite: Sequence[Sequence[str]] = (),
 ) -> GeometryFacts:
     """Read what the faces of a STEP file are, in a process of its own.
 
@@ -265,13 +267,14 @@ def read_facts(
         overlaps: whether parts are searched for common volumes, which takes the kernel a while.
         touching: whether contacts are sought.
         leave_out: names of parts that are not read.
+        unite: names of bodies that are one part each.
 
     Raises:
         ReadError: the file cannot be read, or the kernel died on it.
-        InputError: there is no part to leave out, or none is left.
+        InputError: there is no part to leave out or to unite, or none is left.
     """
     check_head(path)
-    return ask_kernel(path, _read_facts, points or {}, overlaps, touching, leave_out)
+    return ask_kernel(path, _read_facts, points or {}, overlaps, touching, leave_out, unite)
 
 
 def _read_facts(
@@ -280,12 +283,17 @@ def _read_facts(
     overlaps: bool,
     touching: bool,
     leave_out: Sequence[str],
+    unite: Sequence[Sequence[str]],
 ) -> GeometryFacts:
     """The facts, in a process that has the kernel."""
-    cad = read_parts(path).without(leave_out)
+    cad = read_parts(path).united(unite).without(leave_out)
     found = facts_of(cad.solids, cad.names, path.name, points, touching=touching)
     shared = tuple(shared_volumes(cad.solids, cad.names)) if overlaps else ()
-    return replace(found, overlaps=shared, notes=cad.notes)
+    bare = [f"{face.number} of {face.part!r}" for face in found.faces if not len(found.triangles(face))]
+    text = f"{path.name}: the CAD kernel does not follow the bounds of the faces {listed(bare, 4)}, so that nothing is "
+    text += "found there; repair them in the CAD program"
+    notes = (*cad.notes, *[Note(code="faces-without-triangles", text=text)] * bool(bare))
+    return replace(found, overlaps=shared, notes=notes)
 
 
 def facts_of(
@@ -359,6 +367,8 @@ def _distances(label: str, part: str, at: Sequence[float], solids: Sequence[Any]
 
 def shape_of(corners: Array, normals: Array, area: float) -> dict[str, Any]:
     """Kind of a face from its triangles (t, 3, 3) [m] and the unit normals at their corners, with its numbers."""
+    if not len(corners):  # the kernel gave up on the face
+        return {"kind": "other"}
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     total = cross.sum(axis=0)
     points = corners.reshape(-1, 3)

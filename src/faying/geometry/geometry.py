@@ -51,6 +51,7 @@ class _Request:
     selectors: Mapping[str, Selector]
     snap: float
     leave_out: Sequence[str] = ()
+    unite: Sequence[Sequence[str]] = ()
 
 
 def mesh_step(
@@ -61,6 +62,7 @@ def mesh_step(
     faces: Mapping[str, Selector] | None = None,
     snap: float = 0.0,
     leave_out: Sequence[str] = (),
+    unite: Sequence[Sequence[str]] = (),
     cache: Path | None = None,
 ) -> Mesh:
     """Mesh the solids of a STEP file with second-order tetrahedra, in a process of its own.
@@ -72,6 +74,7 @@ def mesh_step(
         faces: name to give -> which faces get it, beside the names of the file.
         snap: faces of two parts that lie no farther apart than this count as touching [m].
         leave_out: names of parts that are not meshed.
+        unite: names of bodies that are one part each.
         cache: folder that keeps the mesh for the next call; see `faying.cache.kept`.
 
     Faces that two parts share come out matched node for node, one copy per part.
@@ -88,6 +91,7 @@ def mesh_step(
         selectors=faces or {},
         snap=snap,
         leave_out=list(leave_out),
+        unite=list(map(list, unite)),
     )
 
     def made() -> dict[str, Any]:
@@ -111,7 +115,7 @@ def mesh_step(
 def _mesh_arrays(path: Path, request: _Request) -> dict[str, Any]:
     """Mesh what `mesh_step` asks for, in a process that has the kernel; whoever asked checks the mesh."""
     size, occ = request.size, kernel()
-    cad = read_parts(path).without(request.leave_out)
+    cad = read_parts(path).united(request.unite).without(request.leave_out)
     solids, names, notes = cad.solids, cad.names, cad.notes
     for solid, name in zip(solids, names, strict=True):
         solid.name = name

@@ -14,6 +14,7 @@ FARTHEST = 4.0  # outer diameters of a seat beyond the end of a bore, up to whic
 COVERED = 0.15  # share of the ring of a seat that lips cover, at least
 BALANCED = 0.3  # of the outer radius: how far the middle of what they cover lies from the axis, at most
 SHANK = 0.95  # of the radius of a bolt: what must find a free way to the lips
+ROOM = 0.5  # bolt diameters behind lips that are free for a nut; a thin one (ISO 4035) is as high
 RADII = 4  # circles between the edges of a ring, at which lips are looked for
 
 
@@ -56,7 +57,7 @@ def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tup
     """Planes of other parts that a nut or head presses on through an opening beyond the end of a bore; often none.
 
     The bolt must find a free way along the axis to the nearest of such planes, which look away from the bore, and
-    what they cover of the ring of the seat must lie about the axis.
+    what they cover of the ring of the seat must lie about the axis, with room for a nut behind it.
 
     Args:
         facts: of the geometry.
@@ -92,7 +93,9 @@ def lips(facts: GeometryFacts, bore: Bore, *, top: bool, shank: float, ring: tup
         if not 0 < level < far or np.any(way[0] & (way[1] > LEVEL) & (way[1] < level - LEVEL)):
             continue
         alike = [k for k, one in levels.items() if abs(one - level) <= LEVEL]
-        covered = np.any(over & np.isin(owner, alike)[:, None] & (np.abs(deep - level) <= 2 * LEVEL), axis=0)
+        own = np.isin(owner, alike)[:, None]
+        covered = np.any(over & own & (np.abs(deep - level) <= 2 * LEVEL), axis=0)
+        covered &= ~np.any(over & ~own & (deep > level - 2 * LEVEL) & (deep < level + ROOM * shank), axis=0)
         aside = np.linalg.norm(points[covered].mean(axis=0)) if np.any(covered) else np.inf
         if covered.mean() > COVERED and aside < BALANCED * ring[1] / 2:
             return [faces[k] for k in alike if np.any(over[owner == k] & covered)]

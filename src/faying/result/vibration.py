@@ -56,6 +56,9 @@ class VibrationResponse(Recorded):
     frequency: Array = variable("estimate mode", "Hz", "frequency that is reached", "modes/")
     damping: Array = variable("estimate mode", "1", "damping ratio that is reached", "modes/")
     level: Array = variable("estimate mode", "m/s2", "acceleration where a mode alone moves most", "modes/")
+    reach: Array = variable(
+        "mode", "m/s2", "level at which the curve of a mode ends; infinite where it does not", "modes/"
+    )
     curve_level: Array = variable("mode sample", "m/s2", "level of a mode", "modes/")
     curve_damping: Array = variable("mode sample", "1", "damping ratio of a mode at that level", "modes/")
     points: Array = variable("point axis", "m", "points whose motion is given", "points/position")

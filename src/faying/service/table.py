@@ -42,6 +42,7 @@ def mode_rows(found: VibrationResponse) -> Rows:
         ("at rest [Hz]", found.rest_frequency[some], ".2f"),
         ("reached [Hz]", found.frequency[1, some], ".2f"),
         ("level [m/s2]", found.level[1, some], ".3g"),
+        *([("curve to", found.reach[some], ".3g")] if np.isfinite(found.reach[some]).any() else []),
         ("5 to 95 %", _ends(found.level[:, some], ".3g"), ""),
         ("damping [%]", 100 * found.damping[1, some], ".3g"),
         ("5 to 95 %", _ends(100 * found.damping[:, some], ".3g"), ""),

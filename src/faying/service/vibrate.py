@@ -364,6 +364,10 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
         if patch.bolt < 0:
             same = [n for n, other in enumerate(excited.patches) if other.joint == patch.joint]
             margins[:, :, patch.joint] = found["margin"][:, k], found["margin"][:, same].min(axis=1)
+    reach = np.full(len(sets.best), np.inf)
+    for k in sets.ended:
+        curve = sets.best[k - 1]
+        reach[k - 1] = curve.amplitudes.max(initial=0.0) * curve.speed**2 * excited.greatest[elastic][k - 1]
     levels, damping = _curves(sets.best, found["frequency"][1], found["level"][1], excited.greatest[elastic])
     return VibrationResponse(
         title=base.title,
@@ -391,7 +395,8 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
         slip_margin_worst=margins[1],
         curve_level=levels,
         curve_damping=damping,
-        notes=tuple(_notes(given, sets, found)),
+        reach=reach,
+        notes=tuple(_notes(given, sets, found, reach)),
         provenance=base.provenance,
         **{name: found[name] for name in ANSWERS},
     )
@@ -405,7 +410,7 @@ def _curves(curves: Sequence[ModeCurve], frequency: Array, level: Array, greates
     return sigmas * found[..., 0] ** 2 * greatest_motion[:, None], found[..., 1]
 
 
-def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> list[Note]:
+def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach: Array) -> list[Note]:
     """What is assumed, what was left out, and where joints slide."""
     excitation, what = given.excited.excitation, f"vibration {given.excited.excitation.name!r}"
     last = float(excitation.table.frequencies[-1])
@@ -417,15 +422,14 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array]) -> li
             "answers as at rest; raise modes.count"
         )
         out.append(Note(code="vibration-band", text=text))
-    reached = CURVE_REACH[excitation.kind] * found["level"][1] / (2 * np.pi * found["frequency"][1]) ** 2
-    amplitudes = reached / given.excited.greatest[given.excited.rigid :]
-    ended = [k for k in sets.ended if amplitudes[k - 1] > sets.best[k - 1].amplitudes.max(initial=0.0)]
-    if ended:
+    level = found["level"][1]
+    for k in np.flatnonzero(CURVE_REACH[excitation.kind] * level > reach).tolist():
         text = (
-            f"{what}: friction does not hold the joints against mode {', '.join(map(str, ended))} at the level "
-            "that is reached; beyond the end of its curve frequency and damping stay"
+            f"{what}: mode {k + 1} reaches {level[k]:.3g} m/s2, and its curve ends at {reach[k]:.3g} m/s2, beyond which "
+            "its joints open or slide so far that the mode alone has no cycle; frequency and damping stay as they are "
+            "there, which may be far off"
         )
-        out.append(Note(code="no-level-answer", text=text))
+        out.append(Note(code="vibration-beyond", text=text))
     if np.any(found.get("jumps", np.zeros(1)) > 0):
         text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
         out.append(Note(code="vibration-jumps", text=text))

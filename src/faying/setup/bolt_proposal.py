@@ -28,6 +28,8 @@ class DrawnBodies:
         volumes: [m3] that rest on the head's side and at the end: all but the shank between the seats; None at the end
             where neither a nut nor a thread is drawn.
         holes: part and number of the faces of all holes that are its own.
+        solid: those that are one body where the bolt is meshed, the stem and its nuts; empty in a thread, under a
+            countersunk head, or where a nut lacks or does not touch.
     """
 
     names: tuple[str, ...]
@@ -35,6 +37,7 @@ class DrawnBodies:
     shank: float | None
     volumes: tuple[float, float | None]
     holes: frozenset[tuple[str, int]]
+    solid: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,9 +96,9 @@ class BoltProposal:
         return self.size is not None and is_graded(Thread.coarse(self.size * 1e-3))
 
 
-def grouped(names: Sequence[str]) -> str:
+def grouped(names: Sequence[str], kind: str = "bolt") -> str:
     """Names of bolts that are alike on one line: each of a few, else how many they are, the first and the last."""
-    return ", ".join(names) if len(names) <= MAX_NAMES else f"{len(names)} bolts ({names[0]} to {names[-1]})"
+    return ", ".join(names) if len(names) <= MAX_NAMES else f"{len(names)} {kind}s ({names[0]} to {names[-1]})"
 
 
 def rounded(value: float, digits: int, *, up: bool | None = None) -> float:

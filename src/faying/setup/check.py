@@ -226,7 +226,7 @@ def _geometry(study: Study, found: _Findings) -> tuple[GeometryFacts | None, Mes
             mesh = mesh_of(spec)
             _notes(found, (*mesh.notes, *quality(mesh).notes), "geometry.mesh")
             return mesh_facts(mesh, points), mesh
-        facts = read_facts(spec.file, points=points, overlaps=True, leave_out=spec.leave_out)
+        facts = read_facts(spec.file, points=points, overlaps=True, leave_out=spec.leave_out, unite=spec.unite)
     except FayingError as fault:
         found.add("fault", "geometry", str(fault), "geometry.mesh" if spec.mesh is not None else "geometry.step")
         return None, None

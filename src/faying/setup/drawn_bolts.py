@@ -20,6 +20,7 @@ from faying.units import show
 WIDEST = 2.0  # stem diameters: wider holes on its axis are not its own
 OUT = 0.3  # diameters: a stem that stands out of its last hole by more ends in a nut, drawn or not
 CLOSE = 1e-5  # m: surfaces that CAD draws as touching, with what programs round
+TIGHT = 1e-4  # of the radius: a nut that is wider by no more touches its stem
 SHALLOW = 0.8  # diameters of engagement below which a thread of the bolt's own strength strips (VDI 2230, R11)
 
 
@@ -84,8 +85,9 @@ def drawn_bolts(facts: GeometryFacts, found: Sequence[FastenerForm], solid: Iter
 
 def _row(stem: FastenerForm, line: Line, rings: Sequence[FastenerForm], holes: Sequence[Bore]) -> _Row | None:
     """A stem with its holes, nuts and washers; None where it has no holes or ends."""
-    tubes = [line.span(stem.line, start, end) for _, start, end in stem.stems]
-    low, high = min(start for start, _ in tubes), max(end for _, end in tubes)
+    sunk = stem.head and -stem.head not in stem.bearings  # its head lies in the first hole
+    ends = [(stem.low, stem.high)] if sunk else [(start, end) for _, start, end in stem.stems]
+    low, high = line.span(stem.line, min(start for start, _ in ends), max(end for _, end in ends))
 
     def span(body: Bore | FastenerForm) -> tuple[float, float]:
         return line.span(body.line, body.low, body.high)
@@ -164,9 +166,24 @@ def _bolt(facts: GeometryFacts, row: _Row) -> BoltProposal | None:
             shank=_plain(row, at[0], mouth if tapped else at[1]),
             volumes=(volumes[0], volumes[1] if tapped or row.nuts(1) else None),
             holes=frozenset(side for bore in row.bores for side in bore.sides),
+            solid=() if tapped or cone is not None else _solid(row),
         ),
         remark=_remark(row, size, tapped, engaged),
     )
+
+
+def _solid(row: _Row) -> tuple[str, ...]:
+    """Bodies that touch and are one meshed bolt: the stem and its nuts; none where a nut lacks or does not touch it."""
+    nuts = (*row.nuts(0), *row.nuts(1))
+
+    def touches(nut: FastenerForm) -> bool:
+        low, high = row.span(nut)
+        return any(
+            radius >= (1 - TIGHT) * nut.radius and start < low + CLOSE and end > high - CLOSE
+            for radius, start, end in row.stems
+        )
+
+    return (row.stem.part, *(nut.part for nut in nuts)) if row.nuts(1) and all(map(touches, nuts)) else ()
 
 
 def _is_thread(row: _Row) -> bool:
@@ -242,6 +259,8 @@ def _remark(row: _Row, size: float, tapped: bool, engaged: float | None) -> str:
     stem, one = row.stem, metric(size)
     head = "stud" if not stem.head else f"screw with a {_head_words(row)}"
     words = [f"M{size:g} by the part {stem.part!r}, a {head}"]
+    if abs(1e3 * stem.diameter - size) > NOMINAL:
+        words.append(f"its stem is drawn with {show(stem.diameter, 'm')}")
     nuts = row.nuts(0) + row.nuts(1)
     words += [f"nut {nut.part!r}" for nut in nuts]
     for washer in row.washers(0) + row.washers(1):

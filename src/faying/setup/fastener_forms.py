@@ -3,8 +3,9 @@
 What a body is, its faces say: cylinders about one axis, hexagons, and planes that look along the axis.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from faying.fe.line import FACING, Line, across
 from faying.geometry.bores import Bore, tubes
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
 from faying.geometry.seen_along import hits
+from faying.typing import Array
 
 SLENDER = 3.0  # radii of its stem, beyond which a body with a stem is no fastener, but a spigot, say
 STEM = 1.4  # over the narrowest stem, up to which a cylinder is a stem, too: nominal over core diameter of M1.6 is 1.37
@@ -29,7 +31,10 @@ LARGE = 3.2  # of its hole: what a washer is wide at most; large ones of ISO 709
 PLAY = 0.01  # of the radius: what a nut or a thread is wider than a stem at most
 CORE = 0.7  # of the radius of a stem: the narrowest hole of its nut or thread; ISO 724 has 0.73 for M1.6
 NUT = 1.3, 2.5  # stem diameters: the farthest that a nut reaches from the axis, and how long it is at most
+TOUCH = 1e-5  # m: grooves of a thread that are no farther apart follow each other
 DRAWN = 0.02  # of its diameter: how far a stem may be from the size that it is drawn as
+
+_Span: TypeAlias = tuple[float, float, float, FaceFacts]  # of a face: where it begins and ends, its radius [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,22 +135,25 @@ def forms(facts: GeometryFacts) -> list[FastenerForm]:
 def _form(facts: GeometryFacts, part: str, volume: float) -> FastenerForm | None:
     faces = facts.by_part[part]
     holes, shafts = tubes(faces, hole=True), tubes(faces, hole=False)
-    line = _axis([*holes, *shafts])
+    corners = facts.corners_of(part)
+    line = _axis([*holes, *shafts]) or _axis_of_planes(facts, faces, corners)
     if line is None:
         return None
-    corners = facts.corners_of(part)
     arm, depth = line.about(corners)
     flat = (corners - line.point) @ across(line.axis)
     ring = not np.any(hits(flat, depth.reshape(-1, 3), np.zeros((1, 2)))[0])
-    round_it = [
-        tube for tube in (holes if ring else shafts) if tube.turn > ROUND and line.holds(tube.line, ASIDE * tube.radius)
-    ]
+    whole = [tube for tube in (holes if ring else shafts) if tube.turn > ROUND]
+    plain = {n for tube in whole if tube.high - tube.low > SHORT * 2 * tube.radius for n in tube.faces}
+    round_it = _threads(facts, [face for face in faces if face.number not in plain], line, inside=ring)
+    grooved = {n for thread in round_it for n in thread.faces}
+    round_it += [t for t in whole if line.holds(t.line, ASIDE * t.radius) and grooved.isdisjoint(t.faces)]
     long = [tube.radius for tube in round_it if ring or tube.high - tube.low > SHORT * 2 * tube.radius]
     stems = [tube for tube in round_it if ring or (long and tube.radius <= STEM * min(long))]
     radius = (min if ring else max)((tube.radius for tube in stems), default=0.0)
     if not stems or (not ring and arm.max() > SLENDER * radius):
         return None
-    if not all(line.holds(hole.line, ASIDE * hole.radius) for hole in holes):
+    own = [hole for hole in holes if hole.turn > ROUND or hole.radius > APART * radius]  # not the round ends of a mark
+    if not all(line.holds(hole.line, ASIDE * hole.radius) for hole in own):
         return None  # a part with holes for others
     spans = [(tube.radius, *line.span(tube.line, tube.low, tube.high)) for tube in stems]
     head = 0
@@ -180,6 +188,74 @@ def _axis(cylinders: Sequence[Bore]) -> Line | None:
         return sum(one.radius * one.turn * (one.high - one.low) for one in alike)
 
     return max((one.line for one in cylinders), key=area_about, default=None)
+
+
+def _axis_of_planes(facts: GeometryFacts, faces: Sequence[FaceFacts], corners: Array) -> Line | None:
+    """The axis of a body with a thread and no cylinder: normal to a plane, in the middle of the plane and the body."""
+    for face in faces:
+        if face.normal is not None:
+            line = Line(point=np.array(face.centre), axis=np.array(face.normal))
+            flat = (corners.reshape(-1, 3) - line.point) @ across(line.axis)
+            central = np.all(np.abs(flat.max(axis=0) + flat.min(axis=0)) < ASIDE * np.ptp(flat, axis=0))
+            if central and any(_threads(facts, faces, line, inside=inside) for inside in (True, False)):
+                return line
+    return None
+
+
+def _threads(facts: GeometryFacts, faces: Sequence[FaceFacts], line: Line, *, inside: bool) -> list[Bore]:
+    """Threads that are drawn with their grooves, helical or round, as cylinders at their crests.
+
+    They are narrow faces, one behind the other along a line, no deeper than a thread, whose area is at least that of a
+    cylinder.
+
+    Args:
+        facts: of the geometry.
+        faces: of one part, but those of plain cylinders.
+        line: the axis.
+        inside: whether threads of a hole are sought.
+    """
+    found = []
+    for face in faces:
+        tris = facts.triangles(face)
+        arm, depth = line.about(tris)
+        if face.normal is None and len(tris) and arm.min() >= CORE * arm.max():
+            middle = tris.mean(axis=1) - line.point
+            normals = np.cross(tris[:, 1] - tris[:, 0], tris[:, 2] - tris[:, 0])
+            if (np.sum(normals * (middle - np.outer(middle @ line.axis, line.axis))) < 0) == inside:
+                found.append((depth.min(), depth.max(), arm.min() if inside else arm.max(), face))
+    out, start = [], line.point @ line.axis
+    for run in _runs(sorted(found, key=lambda one: one[0])):
+        order = sorted(run, key=lambda one: one[2])
+        areas = np.cumsum([one[3].area for one in order])
+        radius = float(order[int(np.searchsorted(areas, areas[-1] / 2))][2])  # of most of the area
+        own = [one for one in run if (one[2] >= (1 - PLAY) * radius if inside else one[2] <= (1 + PLAY) * radius)]
+        low, high = min(one[0] for one in own), max(one[1] for one in own)  # without a fillet or a flange at its end
+        if high - low > SHORT * 2 * radius and areas[-1] > ROUND * 2 * np.pi * radius * (high - low):
+            out.append(
+                Bore(
+                    part=run[0][3].part,
+                    radius=radius,
+                    axis=line.axis,
+                    point=line.point,
+                    low=float(start + low),
+                    high=float(start + high),
+                    faces=tuple(one[3].number for one in run),
+                )
+            )
+    return out
+
+
+def _runs(spans: Iterable[_Span]) -> list[list[_Span]]:
+    """Spans in the order of their beginnings, put together where one touches the last."""
+    out: list[list[_Span]] = []
+    end = -np.inf
+    for one in spans:
+        if one[0] <= end + TOUCH:
+            out[-1].append(one)
+        else:
+            out.append([one])
+        end = max(end, one[1])
+    return out
 
 
 def _flats(faces: Sequence[FaceFacts], line: Line) -> float | None:

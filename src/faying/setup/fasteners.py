@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from itertools import permutations
 from math import pi
 
+import numpy as np
+
 from faying.bolt.standards import nearest_size
 from faying.fe.line import Line
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, Point, TouchingFaces
@@ -14,6 +16,7 @@ from faying.setup.fastener_forms import DRAWN, PLAY, SLENDER, forms
 from faying.text import listed
 from faying.units import show
 
+WIDEST_PIN = 50e-3  # m: of ISO 2338; wider shafts without play are parts of a structure
 SOLID = 0.75  # of the volume of a cylinder, below which a pin is hollow
 
 Side = tuple[str, int]
@@ -71,6 +74,11 @@ class Fasteners:
         return (*(names[0] for names in bodies), *(name for names in bodies for name in names[1:]))
 
     @property
+    def solid(self) -> tuple[tuple[str, ...], ...]:
+        """Bodies of each bolt that can be meshed as one part."""
+        return tuple(bolt.drawn.solid for bolt in self.bolts if bolt.drawn is not None and bolt.drawn.solid)
+
+    @property
     def remarks(self) -> list[str]:
         """What there is to say of the parts that are left out."""
         out = "Left out of the mesh (geometry.leave_out)"
@@ -97,8 +105,11 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
         joints: the planes that touch.
     """
     shafts = [shaft for part in facts.parts if (shaft := _shaft(facts, part.name)) is not None]
-    meshed = {shaft.part: bolt for shaft in shafts if (bolt := _meshed(facts, joints, shaft)) is not None}
-    found = [form for form in forms(facts) if form.part not in meshed]
+    bodies = forms(facts)
+    stems = {form.part for form in bodies if not form.ring}
+    own = (_meshed(facts, joints, shaft) for shaft in shafts if shaft.part in stems)
+    meshed = {bolt.part: bolt for bolt in own if bolt is not None and bolt.part is not None}
+    found = [form for form in bodies if form.part not in meshed]
     drawn = drawn_bolts(facts, found, meshed)
     taken = {*meshed} | {name for bolt in drawn if bolt.drawn is not None for name in bolt.drawn.names}
     dowels, others = [], []
@@ -107,9 +118,10 @@ def find_fasteners(facts: GeometryFacts, joints: Sequence[TouchingFaces]) -> Fas
             continue
         fitted = {hole.part for hole in shaft.tight}
         nuts = [form.part for form in found if form.part in fitted and form.fits(shaft.radius)]
-        if len(fitted) > 1 and not nuts and not any(_pressed(facts, joints, shaft)):
+        is_pin = len(fitted) > 1 and shaft.radius <= (1 + PLAY) * WIDEST_PIN / 2
+        if is_pin and not nuts and not any(_pressed(facts, joints, shaft)):
             dowels.append(_pin(facts, shaft))
-        else:
+        elif shaft.part in stems:
             others += [shaft.part, *nuts]
     fill = [shaft for shaft in shafts if shaft.part in meshed or (shaft.tight and shaft.part not in taken)]
     return Fasteners(
@@ -153,11 +165,11 @@ def _shaft(facts: GeometryFacts, part: str) -> _Shaft | None:
 
 
 def _meshed(facts: GeometryFacts, joints: Sequence[TouchingFaces], shaft: _Shaft) -> BoltProposal | None:
-    """The bolt that a part is with its nut, from its shaft: one flat face presses at each end of its shank."""
-    low, high = _pressed(facts, joints, shaft)
-    if len(low) != 1 or len(high) != 1:
+    """The bolt that a part is with its nut, from its shaft: two flat faces that look at each other clamp the others."""
+    along, back = _pressed(facts, joints, shaft)
+    if len(along) != 1 or len(back) != 1 or (np.subtract(back[0].centre, along[0].centre) @ shaft.line.axis) <= 0:
         return None
-    head, nut = sorted((low[0], high[0]), key=lambda face: -face.area)
+    head, nut = sorted((along[0], back[0]), key=lambda face: -face.area)
     clamped = {part for contact in facts.contacts if shaft.part in contact.parts for part in contact.parts}
     tight = len(shaft.tight) == len(shaft.holes)  # as a rivet is
     return BoltProposal(

@@ -113,6 +113,7 @@ def new_study(
     materials: str | Mapping[str, str] | None = None,
     preload: float | str | None = None,
     unit: str | None = None,
+    mesh_bolts: bool = False,
     force: bool = False,
 ) -> Written:
     """Write a commented study of a part or an assembly: the joints, bolts, dowels and seats that its geometry has.
@@ -124,6 +125,7 @@ def new_study(
         materials: Material of all parts, or part -> material, of the catalogue; steel where a part is left out.
         preload: Force of each bolt [N], or text such as "12 kN"; what the bolt sheet accepts of class 8.8 where None.
         unit: Unit of a mesh file's coordinates, such as "mm".
+        mesh_bolts: Whether bolts that a STEP file shows with their nuts are meshed; else beams stand for them.
         force: Whether files that exist are replaced.
 
     Returns:
@@ -134,7 +136,7 @@ def new_study(
         ReadError: The geometry cannot be read.
     """
     path, out = Path(geometry), Path(study)
-    proposal = find(path, unit)
+    proposal = find(path, unit, mesh_bolts=mesh_bolts)
     parts = [part.name for part in proposal.facts.parts]
     given = dict.fromkeys(parts, materials) if isinstance(materials, str) else dict(materials or {})
     unknown = [name for name in given if name not in parts]
@@ -145,13 +147,13 @@ def new_study(
     return write(proposal, path, out, answers, force=force)
 
 
-def find(step: Path, unit: str | None = None) -> Proposal:
+def find(step: Path, unit: str | None = None, *, mesh_bolts: bool = False) -> Proposal:
     """Read a STEP file, or a mesh file in a unit, and propose what its study may hold.
 
     Raises ReadError and InputError as `propose` and `propose_mesh`.
     """
     if kind_of(step) is STEP:
-        return propose(faces(step, unit=unit), step)
+        return propose(faces(step, unit=unit), step, mesh_bolts=mesh_bolts)
     return propose_mesh(step, unit)
 
 
@@ -212,7 +214,8 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
         "[modes]\ncount = 10                     # elastic modes\n",
     ]
     assumed += _assumed_of_bolts(proposal.bolts, answers)
-    assumed += alike((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
+    pins = ((dowel.name, f"{dowel.remark}; without play, {STEEL}") for dowel in proposal.dowels)
+    assumed += alike(pins, "dowel")
     assumed.append("no support: the structure is free")
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
@@ -286,6 +289,7 @@ def _geometry(proposal: Proposal, step: str) -> str:
         _line("size", _length(proposal.size), f"largest element: about {proposal.unknowns:,} unknowns"),
         _line("snap", snap, "ASSUMED: gaps of the CAD model up to this are none"),
         _line("leave_out", proposal.left_out, "parts of the file that are not meshed"),
+        _line("unite", proposal.unite, "bodies of the file that are one part: bolts with their nuts"),
         f"[geometry.face]  # names for faces; `faying faces {_plain(step)}` lists all of them" * bool(proposal.faces),
         *(_line(quoted(name), selector_table(one)) for name, one in proposal.faces.items()),
     )
@@ -412,12 +416,12 @@ def _assumed_of_bolts(bolts: Sequence[BoltProposal], answers: Answers) -> list[s
     return alike(remarks)
 
 
-def alike(remarks: Iterable[tuple[str, str]]) -> list[str]:
+def alike(remarks: Iterable[tuple[str, str]], kind: str = "bolt") -> list[str]:
     """What is said of each name; names of which one thing is said have one line."""
     groups: dict[str, list[str]] = {}
     for name, words in remarks:
         groups.setdefault(words, []).append(name)
-    return [f"{grouped(names)}: {words}" for words, names in groups.items()]
+    return [f"{grouped(names, kind)}: {words}" for words, names in groups.items()]
 
 
 def _millimetres(point: Sequence[float]) -> list[str]:

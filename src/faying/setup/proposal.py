@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from faying.errors import InputError
-from faying.geometry.face_facts import GeometryFacts, PartFacts, TouchingFaces, part_distance
+from faying.geometry.face_facts import GeometryFacts, PartFacts, TouchingFaces, part_distance, read_facts
 from faying.geometry.selectors import TOUCHING, Selector
 from faying.memory import available
 from faying.setup.bolt_proposal import BoltProposal, rounded
@@ -49,6 +49,7 @@ class Proposal:
         unit: length unit of a mesh file; "" for a STEP file, which is meshed.
         sets: parts of a mesh file that are several of its sets.
         counted: unknowns of a mesh file.
+        unite: bodies of the file that are one part each: bolts that are meshed, with their nuts.
     """
 
     facts: GeometryFacts
@@ -63,6 +64,7 @@ class Proposal:
     sets: dict[str, str] = field(default_factory=dict)
     counted: int = 0
     dowels: tuple[DowelProposal, ...] = ()
+    unite: tuple[tuple[str, ...], ...] = ()
 
     @property
     def alone(self) -> bool:
@@ -75,12 +77,13 @@ class Proposal:
         return self.counted or unknowns_of(self.facts, self.size)
 
 
-def propose(facts: GeometryFacts, path: Path) -> Proposal:
+def propose(facts: GeometryFacts, path: Path, *, mesh_bolts: bool = False) -> Proposal:
     """Propose joints, bolts and a mesh for a geometry.
 
     Args:
         facts: what `read_facts` says of it.
         path: the STEP file, to measure how far parts lie apart.
+        mesh_bolts: whether bolts that are drawn with their nuts are meshed; else beams stand for them.
 
     Raises:
         InputError: several parts, of which none touch.
@@ -89,6 +92,10 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         size, words = mesh_size(facts, set())
         return Proposal(facts=facts, faces={}, joints=(), bolts=(), size=size, snap=0.0, left_out=(), remarks=(words,))
     fasteners = find_fasteners(facts, touching(facts))
+    unite = fasteners.solid if mesh_bolts else ()
+    if unite:
+        facts = read_facts(path, unite=unite)
+        fasteners = find_fasteners(facts, touching(facts))
     facts = facts.without(fasteners.left_out)
     alone = _alone(facts, path)
     facts = facts.without(alone)
@@ -125,6 +132,7 @@ def propose(facts: GeometryFacts, path: Path) -> Proposal:
         snap=snap,
         left_out=(*fasteners.left_out, *alone),
         remarks=tuple(remarks),
+        unite=unite,
     )
 
 

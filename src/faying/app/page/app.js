@@ -137,21 +137,28 @@ async function showScan(again = false) {
   for (const id of ["scan-picture", "map", "map-fault", "band"]) $(id).hidden = true;
   for (const id of ["laws-table", "laws-curves"]) $(id).replaceChildren();
   $("scan-facts").replaceChildren(made("p", "reading the scan …", { className: "hint" }));
-  const units = {};
-  for (const id of ["xy-unit", "z-unit"]) if ($(id).value.trim()) units[id] = $(id).value.trim();
-  if ($("scan-size").value.trim()) units.size = $("scan-size").value.trim();
+  const query = scanQuery();
   try {
-    const { facts, picture } = await ask("GET", "scan", { name, ...units });
+    const { facts, picture } = await ask("GET", "scan", query);
     said("scan-fault", null);
     $("scan-facts").replaceChildren(...scanTable(facts), fitTable(facts), ...warnings(facts));
     $("scan-picture").firstElementChild.src = `data:image/png;base64,${picture}`;
     $("scan-picture").hidden = false;
-    if (facts.points.length === 2) showMap({ name, ...units });
+    if (facts.points.length === 2) showMap(query);
   } catch (fault) {
     $("scan-facts").replaceChildren();
     said("scan-fault", fault);
-    $("scan-units").hidden = !/unit|size|spacing/.test(fault.message);
+    $("scan-units").hidden = !/unit|size|spacing|channel/.test(fault.message);
   }
+}
+
+/** The scan with what the fields say of how it is read. */
+function scanQuery() {
+  const query = { name: $("scans").value };
+  for (const input of $("scan-units").querySelectorAll("input")) {
+    if (input.value.trim()) query[input.name] = input.value.trim();
+  }
+  return query;
 }
 
 function scanTable(facts) {
@@ -184,7 +191,7 @@ $("scans").addEventListener("change", () => showScan());
 $("scan-again").addEventListener("click", () => showScan(true));
 $("show-laws").addEventListener("click", (event) => busy(event.target, "solving the contact …", async () => {
   try {
-    const { facts } = await ask("GET", "laws", { name: $("scans").value });
+    const { facts } = await ask("GET", "laws", scanQuery());
     const marks = "* outside the validity range of the law; - outside what it covers, or without a stiffness of its own";
     $("laws-table").replaceChildren(lawTable(facts), made("p", marks, { className: "hint" }));
     showLaws($("laws-curves"), facts);

@@ -22,7 +22,7 @@ class GeometryChoice:
     """A STEP file and how finely to mesh it, lengths [m]; or a mesh file, its unit, and the element sets of the parts.
 
     snap: faces of a joint nowhere farther apart than this [m] count as touching; leave_out: parts of the STEP file that
-    are not meshed, such as dowels and the bolts that beams stand for.
+    are not meshed, such as dowels and the bolts that beams stand for; unite: bodies that are one part each.
     """
 
     step: Path | None = None
@@ -34,6 +34,7 @@ class GeometryChoice:
     sets: dict[str, str] = field(default_factory=dict)
     snap: float = 0.0
     leave_out: tuple[str, ...] = ()
+    unite: tuple[tuple[str, ...], ...] = ()
 
     @property
     def file(self) -> Path:
@@ -57,8 +58,8 @@ def read_geometry(top: Table) -> GeometryChoice:
     sizes = _by_name(table, "face_size")
     faces = _faces(table)
     snap = table.get("snap")
-    left = table.get("leave_out")
-    return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap, leave_out=left)
+    bodies = {key: table.get(key) for key in ("leave_out", "unite")}
+    return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap, **bodies)
 
 
 def _by_name(table: Table, key: str) -> dict[str, Any]:
@@ -74,6 +75,13 @@ def _parts(value: Any, name: str) -> tuple[str, ...]:
     return tuple(value)
 
 
+def _groups(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
+    """Groups of names of parts. Raises InputError for any other value."""
+    if not isinstance(value, list) or not all(isinstance(one, list) and len(one) > 1 for one in value):
+        raise InputError(f'{name} = {value!r} should be a list of groups, for example [["bolt 1", "nut 1"]]')
+    return tuple(_parts(one, name) for one in value)
+
+
 def _faces(table: Table) -> dict[str, Selector]:
     """Take [geometry.face]."""
     found = {name: read_selector(one) for name, one in table.named("face").items()}
@@ -87,7 +95,7 @@ def _meshed(table: Table) -> GeometryChoice:
     if "unit" not in table.data:
         table.faults.add('geometry.unit is missing: a mesh file does not state its unit; write for example unit = "mm"')
     unit = table.get("unit")
-    for key in ("step", "size", "face_size", "leave_out"):
+    for key in ("step", "size", "face_size", "leave_out", "unite"):
         if key in table.data:
             table.faults.add(f"geometry.{key} is for a STEP file, and geometry.mesh is a finished mesh; leave it out")
             table.data.pop(key)
@@ -112,6 +120,7 @@ def mesh_of(spec: GeometryChoice) -> Mesh:
         faces=spec.face,
         snap=spec.snap,
         leave_out=spec.leave_out,
+        unite=spec.unite,
         cache=spec.file.parent / cache.FOLDER,
     )
 
@@ -157,6 +166,13 @@ GEOMETRY: Declared = {
         "Parts of the STEP file that are not meshed, such as dowels, or the bolts and nuts that a [[bolt]] stands for.",
         (),
         read=_parts,
+    ),
+    "unite": Key(
+        'a list of groups, for example [["bolt 1", "nut 1"]]',
+        listed(listed(WORDS, 2), 0),
+        "Bodies of the STEP file that touch and are one part, by the name of the first, such as a bolt with its nut.",
+        (),
+        read=_groups,
     ),
     "mesh": Key.file("Mesh file, in place of step and size.", REQUIRED),
     "unit": Key.length_unit('Unit of the coordinates of the mesh file, for example "mm"; needed with mesh.'),
