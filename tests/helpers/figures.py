@@ -371,7 +371,7 @@ def shaken(load=8e3, name="shaker"):
         frequency=np.outer(np.ones(3), modes),
         damping=np.outer(three, 2e-3 + 0 * modes),
         level=level,
-        reach=np.full(10, np.inf),
+        reach=np.full(10, np.nan),
         curve_level=level[1][:, None] * np.geomspace(0.05, 3, 15),
         curve_damping=np.outer(1 + np.arange(10), np.geomspace(1e-3, 4e-3, 15)),
         points=np.array([[0.0, 0, 0.1], [0.1, 0, 0]]),

@@ -57,7 +57,7 @@ class VibrationResponse(Recorded):
     damping: Array = variable("estimate mode", "1", "damping ratio that is reached", "modes/")
     level: Array = variable("estimate mode", "m/s2", "acceleration where a mode alone moves most", "modes/")
     reach: Array = variable(
-        "mode", "m/s2", "level at which the curve of a mode ends; infinite where it does not", "modes/"
+        "mode", "m/s2", "where the curve of a mode ends; NaN where it need not", "modes/", gaps=True
     )
     curve_level: Array = variable("mode sample", "m/s2", "level of a mode", "modes/")
     curve_damping: Array = variable("mode sample", "1", "damping ratio of a mode at that level", "modes/")

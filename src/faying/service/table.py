@@ -74,8 +74,7 @@ def bolt_rows(found: VibrationResponse) -> Rows:
         ("damage", found.damage[1], ".2g"),
         ("to 95 %", found.damage[2], ".2g"),
         ("life", [_life(found, one) for one in found.life[1].tolist()], ""),
-        ("head", found.head_motion[1], ".2g"),
-        ("to 95 %", found.head_motion[2], ".2g"),
+        ("head, 95 %", found.head_motion[2], ".2g"),
     )
 
 

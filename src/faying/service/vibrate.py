@@ -364,7 +364,7 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
         if patch.bolt < 0:
             same = [n for n, other in enumerate(excited.patches) if other.joint == patch.joint]
             margins[:, :, patch.joint] = found["margin"][:, k], found["margin"][:, same].min(axis=1)
-    reach = np.full(len(sets.best), np.inf)
+    reach = np.full(len(sets.best), np.nan)
     for k in sets.ended:
         curve = sets.best[k - 1]
         reach[k - 1] = curve.amplitudes.max(initial=0.0) * curve.speed**2 * excited.greatest[elastic][k - 1]
@@ -425,8 +425,8 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
     level = found["level"][1]
     for k in np.flatnonzero(CURVE_REACH[excitation.kind] * level > reach).tolist():
         text = (
-            f"{what}: mode {k + 1} reaches {level[k]:.3g} m/s2, and its curve ends at {reach[k]:.3g} m/s2, beyond which "
-            "its joints open or slide so far that the mode alone has no cycle; frequency and damping stay as they are "
+            f"{what}: mode {k + 1} reaches {level[k]:.3g} m/s2, its curve ends at {reach[k]:.3g} m/s2; beyond, its "
+            "joints open or slide so far that the mode alone has no cycle; frequency and damping stay as they are "
             "there, which may be far off"
         )
         out.append(Note(code="vibration-beyond", text=text))
