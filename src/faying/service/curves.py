@@ -19,6 +19,8 @@ from faying.typing import Array
 LOWEST = 0.02  # of the amplitude that a mode would have with the least damping at rest: where its curve begins
 STEP = 2.0  # from level to level: between them a curve of two plateaus is smooth to 1 %
 STEP_AT_ENDS = 4.0  # the same at the ends of friction, where 3 % do
+STEEP = 2.0  # slip that grows by more than this power of a step asks for smaller ones, as does a level without answer
+FINEST_STEP = 1.15  # the smallest: two blocks that begin to slide as a whole have 90 times the damping over a step of 2
 SLIGHT = 0.1  # of the damping at rest: a curve that begins with more slip goes down first, in steps of
 DOWN = 8.0
 MOST_DOWN = 6  # at most so many of them
@@ -148,6 +150,12 @@ def _march(
         level /= DOWN
     while level > 0:
         cycle = model.cycle(level, mode)
+        steep = points and cycle.damping > max(SLIGHT * curve.rest, points[-1][2] * step**STEEP)
+        if (steep or (points and not np.isfinite(cycle.frequency))) and step > FINEST_STEP:
+            level /= step
+            step = np.sqrt(step)
+            level *= step
+            continue
         if not np.isfinite(cycle.frequency):
             return curve, True
         amplitude = float(np.linalg.norm(cycle.motion[1]))

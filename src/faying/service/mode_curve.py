@@ -12,15 +12,34 @@ import numpy as np
 
 from faying.typing import Array, Complex, Mask
 
-# Gauss-Laguerre nodes x = a^2/(2 sigma^2): over Rayleigh's distribution of the amplitude x is exponential. 24 hold the
-# means below to 1e-6 of a damping that goes from one plateau to another over a decade
+# Gauss-Laguerre nodes of the power spent, which has an exponential density: 24 hold the rms to 1e-5 where the damping
+# goes from one plateau to another over a decade
 NODES = 24
-# rms over that with the damping at rest, between which the balance is sought: less where slip damps, more where a mode
-# that softens moves into the band of the input
-LOWEST, HIGHEST = 1e-4, 1e4
-SCANNED = 33  # steps between them, four in a decade
+FINE = 3000  # amplitudes between which the power spent is interpolated, in logarithms: to 1e-5
+# of the first and the last known amplitude: there the power spent is the square of the amplitude, to 1e-3 and 1e-6, and
+# it is so beyond, in steps of its logarithm
+FIRST_RATIO, LAST_RATIO, LOG_REACH = 1e-3, 1e3, 100.0
+# power over that with the frequency and damping at rest, between which the balance is sought: under white noise it is
+# 1; less where a mode that softens leaves the band of the input, more where it moves to a peak of it
+LEAST_POWER, MOST_POWER = 1e-6, 1e6
+SCANNED = 49  # steps between them, four in a decade
+LEAST_SLIP = 1e-6  # ratio: slip below it is as none, and has no logarithm to draw a curve through
 STEPS = 400  # of amplitude, among which a sine's answers are sought: a step is 3 % of it
 FARTHEST = 4.0  # decades of amplitude below the resonance at rest in which they are sought
+
+
+@dataclass(frozen=True, kw_only=True)
+class RandomLevel:
+    """What a mode does under noise.
+
+    Args:
+        sigma: The rms of its coordinate [m kg^1/2].
+        speed, damping: Circular frequency [rad/s] and damping ratio [-] of the linear mode that loses as much.
+    """
+
+    sigma: float
+    speed: float
+    damping: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,8 +61,8 @@ class ModeCurve:
     def at(self, amplitude: Array) -> tuple[Array, Array]:
         """Circular frequency [rad/s] and damping ratio [-] at amplitudes [m kg^1/2].
 
-        Both are smooth between the points, in the logarithm of the amplitude. Below the first point the change of the
-        frequency and the damping of slip fall in proportion to the amplitude; beyond the last they stay.
+        Between the points the frequency is smooth in the logarithm of the amplitude, and slip a power of it. Below the
+        first point the change of the frequency and slip fall in proportion to the amplitude; beyond the last they stay.
         """
         a = np.asarray(amplitude, dtype=float)
         if not len(self.amplitudes):
@@ -60,40 +79,66 @@ class ModeCurve:
         known = np.log(self.amplitudes)
         if len(known) == 1:
             return lambda x: np.full_like(x, self.speeds[0]), lambda x: np.full_like(x, self.slips[0])
-        return PchipInterpolator(known, self.speeds), PchipInterpolator(known, self.slips)
+        powers = PchipInterpolator(known, np.log(np.maximum(self.slips, LEAST_SLIP)))
+        return PchipInterpolator(known, self.speeds), lambda x: np.exp(powers(x))
 
-    def equivalent(self, sigma: float) -> tuple[float, float]:
-        """Circular frequency [rad/s] and damping ratio [-] of the linear mode that loses as much at an rms of q.
+    @cached_property
+    def _spent(self) -> tuple[Array, Array]:
+        """Logarithms of amplitudes a, and of the integral of 2 zeta omega^3 a from 0 to them."""
+        a = np.geomspace(FIRST_RATIO * self.amplitudes[0], LAST_RATIO * self.amplitudes[-1], FINE)
+        speed, damping = self.at(a)
+        rate = 2 * damping * speed**3 * a**2  # over log(a)
+        parts = (rate[1:] + rate[:-1]) / 2 * np.diff(np.log(a))
+        spent = np.log(rate[0] / 2 + np.concatenate([[0.0], np.cumsum(parts)]))
+        far = np.array([-LOG_REACH, LOG_REACH])  # where it is the square of the amplitude
+        logs = np.insert(np.log(a), [0, FINE], np.log(a[[0, -1]]) + far)
+        return logs, np.insert(spent, [0, FINE], spent[[0, -1]] + 2 * far)
 
-        E[zeta omega^3 a^2] is the mean power lost, over the distribution of the amplitude of a narrow band (Rayleigh):
-        zeta_eq = E[zeta omega^3 a^2] / E[omega^3 a^2], omega_eq^3 = E[omega^3 a^2] / E[a^2].
+    def under(self, power: float) -> RandomLevel:
+        """The vibration in which noise gives the mode a mean power [m2 kg/s3] = E[zeta omega^3 a^2].
+
+        The amplitude wanders slowly, driven by the noise and damped by zeta(a). Its density is a exp(-y), where power
+        times y is the integral of 2 zeta omega^3 a over a; for a linear mode that is Rayleigh's. Over y the density is
+        exp(-y)/(zeta omega^3). The linear mode that loses as much has zeta_eq = E[zeta omega^3 a^2]/E[omega^3 a^2] and
+        omega_eq^3 = E[omega^3 a^2]/E[a^2].
+
+        Source:
+            Stochastic averaging: Stratonovich 1963; Roberts and Spanos 1986, doi:10.1016/0020-7462(86)90025-9.
         """
-        x, weights = _laguerre()
-        speed, damping = self.at(sigma * np.sqrt(2 * x))
-        cubes = float(weights @ (x * speed**3))  # E[a^2] = 2 sigma^2, so that weights @ x = 1
-        return float(np.cbrt(cubes)), float(weights @ (x * damping * speed**3)) / cubes
+        y, weights = _laguerre()
+        if len(self.amplitudes):
+            a = np.exp(np.interp(np.log(power * y), self._spent[1], self._spent[0]))
+        else:
+            a = np.sqrt(power * y / (self.rest * self.speed**3))
+        speed, damping = self.at(a)
+        density = weights / (damping * speed**3)
+        square = float(density @ a**2)
+        cube = float(density @ (speed**3 * a**2)) / square
+        lost = float(density @ (damping * speed**3 * a**2)) / square
+        sigma = float(np.sqrt(square / density.sum() / 2))
+        return RandomLevel(sigma=sigma, speed=float(np.cbrt(cube)), damping=lost / cube)
 
-    def balance(self, variance: Callable[[float, float], float]) -> float:
-        """The rms of q [m kg^1/2] at which the equivalent linear mode has that rms itself.
+    def balance(self, variance: Callable[[float, float], float]) -> RandomLevel:
+        """The vibration at which the equivalent linear mode has its own rms.
 
-        variance: of q [m2 kg], by circular frequency [rad/s] and damping ratio [-]. Under white noise this is
-        E[zeta omega^3 a^2] = pi S_0, the balance of power in and power lost.
+        variance: of q [m2 kg], by circular frequency [rad/s] and damping ratio [-]. Under white noise the power is
+        pi S_0, whatever the mode does with it.
         """
         from scipy.optimize import brentq
 
-        rest = float(np.sqrt(variance(self.speed, self.rest)))
-        if rest == 0 or not len(self.amplitudes):
-            return rest
+        at_rest = variance(self.speed, self.rest)
+        if at_rest == 0 or not len(self.amplitudes):
+            return RandomLevel(sigma=float(np.sqrt(at_rest)), speed=self.speed, damping=self.rest)
 
-        def short(log_sigma: float) -> float:
-            sigma = float(np.exp(log_sigma))
-            return 0.5 * float(np.log(variance(*self.equivalent(sigma)))) - log_sigma
+        def short(log_power: float) -> float:
+            level = self.under(float(np.exp(log_power)))
+            return float(np.log(variance(level.speed, level.damping) / level.sigma**2))
 
-        steps = np.log(rest * np.geomspace(LOWEST, HIGHEST, SCANNED))
+        steps = np.log(2 * self.rest * self.speed**3 * at_rest * np.geomspace(LEAST_POWER, MOST_POWER, SCANNED))
         above = np.flatnonzero(np.array([short(one) for one in steps]) > 0)
         # of several answers the greatest, which the vibration may reach
         k = min(int(above[-1]), SCANNED - 2)
-        return float(np.exp(brentq(short, steps[k], steps[k + 1], xtol=1e-10)))
+        return self.under(float(np.exp(brentq(short, steps[k], steps[k + 1], xtol=1e-10))))
 
     def forced(self, force: Array, speeds: Array) -> tuple[Complex, Mask]:
         """The coordinate under harmonic forces [N kg^-1/2] of circular frequencies [rad/s] (n,), and whether it jumps.

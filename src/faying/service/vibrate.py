@@ -112,7 +112,7 @@ def vibrate(base: Shaken, excitation: Excitation) -> VibrationResponse:
 def _needed(excitation: Excitation, force: float, curve: ModeCurve) -> float:
     """The amplitude of a mode's coordinate up to which its curve is wanted."""
     if excitation.kind == "random":
-        found = curve.balance(partial(variance, excitation.table, force))
+        found = curve.balance(partial(variance, excitation.table, force)).sigma
     else:
         speeds = _swept(excitation, [curve])
         found = float(np.abs(curve.forced(force * excitation.table.at(speeds / (2 * np.pi)), speeds)[0]).max())
@@ -157,8 +157,8 @@ def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> 
     """What random vibration makes of the structure: rms values, and damage a second."""
     excited, table = given.excited, given.excited.excitation.table
     forces = np.abs(excited.force[excited.rigid :])
-    sigmas = np.array([c.balance(partial(variance, table, f)) for c, f in zip(curves, forces.tolist(), strict=True)])
-    speeds, dampings = np.array([c.equivalent(s) for c, s in zip(curves, sigmas, strict=True)]).T
+    levels = [c.balance(partial(variance, table, f)) for c, f in zip(curves, forces.tolist(), strict=True)]
+    sigmas, speeds, dampings = np.array([(one.sigma, one.speed, one.damping) for one in levels]).T
     frequencies, weights = rule(table, speeds, dampings)
     coordinates = _coordinates(excited, speeds, dampings, frequencies)
     density = weights * table.at(frequencies)
@@ -368,7 +368,7 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
     for k in sets.ended:
         curve = sets.best[k - 1]
         reach[k - 1] = curve.amplitudes.max(initial=0.0) * curve.speed**2 * excited.greatest[elastic][k - 1]
-    levels, damping = _curves(sets.best, found["frequency"][1], found["level"][1], excited.greatest[elastic])
+    levels, damping = _curves(given, sets.best, found)
     return VibrationResponse(
         title=base.title,
         name=excitation.name,
@@ -402,12 +402,20 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
     )
 
 
-def _curves(curves: Sequence[ModeCurve], frequency: Array, level: Array, greatest_motion: Array) -> tuple[Array, Array]:
+def _curves(given: _Answering, curves: Sequence[ModeCurve], found: Mapping[str, Array]) -> tuple[Array, Array]:
     """Level [m/s2] and damping ratio [-] of each mode (m, sample) about the level that it reaches."""
-    speeds = 2 * np.pi * frequency
-    sigmas = np.geomspace(*AROUND, SAMPLES) * (level / (speeds**2 * greatest_motion))[:, None]
-    found = np.array([[c.equivalent(float(s)) for s in row] for c, row in zip(curves, sigmas, strict=True)])
-    return sigmas * found[..., 0] ** 2 * greatest_motion[:, None], found[..., 1]
+    speeds = 2 * np.pi * found["frequency"][1]
+    scale = speeds**2 * given.excited.greatest[given.excited.rigid :]
+    amplitudes = np.geomspace(*AROUND, SAMPLES) * (found["level"][1] / scale)[:, None]
+    if given.excited.excitation.kind == "sine":
+        at = np.array([c.at(row) for c, row in zip(curves, amplitudes, strict=True)])
+        return amplitudes * at[:, 0] ** 2 * (scale / speeds**2)[:, None], at[:, 1]
+    powers = 2 * (found["damping"][1] * speeds**3)[:, None] * amplitudes**2
+    levels = [[c.under(float(p)) for p in row] for c, row in zip(curves, powers, strict=True)]
+    sigma, speed, damping = np.moveaxis(
+        np.array([[(one.sigma, one.speed, one.damping) for one in row] for row in levels]), -1, 0
+    )
+    return sigma * speed**2 * (scale / speeds**2)[:, None], damping
 
 
 def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach: Array) -> list[Note]:

@@ -47,8 +47,8 @@ def vibration(state: State, excitations: Sequence[Excitation]) -> tuple[Vibratio
         InputError: Nothing holds the structure against an excitation, or a face or a point is not there.
 
     Source:
-        Equivalent linearisation by the balance of power over Rayleigh's distribution of the amplitude: Roberts and
-        Spanos 2003, Random Vibration and Statistical Linearization, chapter 8.
+        Stochastic averaging: the density of the amplitude of a mode whose damping depends on it, and the linear mode
+        that loses as much. Roberts and Spanos 1986, doi:10.1016/0020-7462(86)90025-9.
     """
     if not excitations:
         raise InputError("excitations is empty; give excitations=[Excitation(...)]")
