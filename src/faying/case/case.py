@@ -30,6 +30,7 @@ from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
 from faying.study.load import Displacement, Force, Pressure
 from faying.study.study import Study
+from faying.study.vibration import not_held
 from faying.typing import Array
 from faying.units import show
 
@@ -266,6 +267,11 @@ def name_faults(
         if face not in faces
     ]
     faults += _heated(study)
+    faults += [
+        (f"vibration[{k}]", not_held(one.name))
+        for k, one in enumerate(study.vibrations, 1)
+        if one.base and not study.supports
+    ]
     return faults or [*_loose_parts(study, parts, faces, one_body), *_idle_bolts(study)]
 
 

@@ -23,7 +23,7 @@ from faying.joint.shank_forces import shank_forces
 from faying.joint.springs import Springs
 from faying.numerics.shifted import Shifted
 from faying.numerics.solve import conjugate_gradients
-from faying.study.vibration import Excitation
+from faying.study.vibration import Excitation, not_held
 from faying.typing import Array, Complex
 
 ACCURACY = 1e-8  # of the static answer, in energy
@@ -123,7 +123,7 @@ def _input_force(structure: BoltedStructure, excitation: Excitation) -> Array:
     what, mesh = f"vibration {excitation.name!r}", structure.mesh
     if excitation.force is None:
         if not structure.supports:
-            raise InputError(f"{what} moves the supports, and there are none; add a [[support]], or give face or point")
+            raise InputError(not_held(excitation.name))
         along = np.tile(np.array(excitation.direction), len(mesh.points))
         force = -structure.inertia(along)
         if structure.rigid.size:

@@ -18,6 +18,7 @@ START, EACH, GROWTH = 5.0, 1.7e-4, 1.13  # CPU seconds: those of any run, and EA
 LOAD, OTHER = 0.25, 0.5  # of that: what each further load takes, and each other law
 LEVELS, WAVES = 0.2, 0.2  # of that: the shares of damping at levels, and of waves where no joint has a form
 SOLID = 0.7  # of that: what the joints under head and nut take where a bolt is a part
+SHAKEN = 7.0  # CPU seconds of a vibration at one preload (the bracket on a shaker: 6 to 12)
 CURVE = 13.0  # CPU seconds of a curve over amplitude (docs/backbone.md)
 BARE, VECTORS = 0.13e9, 24e3  # B: of any run, and for each unknown, with PARDISO's factor in single precision
 OVER_MPI = 11e3  # B for each unknown that the processes of mpiexec take (docs/speed.md)
@@ -58,6 +59,7 @@ class Expected:
         seconds = START + share * EACH * unknowns**GROWTH
         if study.backbone is not None:
             seconds += CURVE * len(study.loads) * max(len(study.backbone.laws), 1)
+        seconds += SHAKEN * len(study.loads) * len(study.vibrations)
         way = chosen(study.modes.solver)
         if is_mpi(way):
             memory = OVER_MPI * unknowns

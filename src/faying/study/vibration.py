@@ -152,6 +152,11 @@ class Excitation:
         return UNITS[self.kind, self.base]
 
 
+def not_held(name: str) -> str:
+    """That the supports should move, and there are none."""
+    return f"vibration {name!r} moves the supports, and there are none; add a [[support]], or give face or point"
+
+
 def _table(given: Any, kind: Kind, unit: str, what: str) -> InputTable:
     """The table of rows, or of a file. Raises InputError that shows the form."""
     key = "psd" if kind == "random" else "sine"

@@ -30,7 +30,17 @@ def _read(table: Table) -> Excitation | None:
 
 def _rows(table: Table, key: str) -> Any:
     """The rows as they are written, or the file of that name."""
-    return table.existing(key) if isinstance(table.data.get(key), str) else table.take(key, lambda value, _: value)
+    if isinstance(table.data.get(key), str):
+        return table.existing(key)
+
+    def rows(value: Any, name: str) -> Any:
+        is_table = isinstance(value, list) and all(isinstance(row, list) for row in value)
+        if not is_table or not all(isinstance(cell, str) for row in value for cell in row):
+            kind = "random" if key == "psd" else "sine"
+            raise InputError(f"{name} = {value!r}; write each number with its unit as text, for example {FORM[kind]}")
+        return value
+
+    return table.take(key, rows)
 
 
 def _points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:

@@ -1,0 +1,57 @@
+"""[[vibration]] in a study: what check and run say before anything is solved."""
+
+import pytest
+
+import faying
+from faying.study.study import Study
+from tests.helpers import studies
+
+BASE = """
+[[vibration]]
+psd = [["20 Hz", "0.01 g^2/Hz"], ["80 Hz", "0.04 g^2/Hz"]]
+"""
+
+
+@pytest.fixture
+def study(tmp_path):
+    path = tmp_path / "study.toml"
+    studies.write(path)
+    return path
+
+
+def shaken(path, text):
+    path.write_text(path.read_text() + text)
+    return path
+
+
+def test_check_and_run_refuse_a_base_that_is_not_there_in_the_same_words(study):
+    path = shaken(study, BASE)
+    found = faying.check(path)
+    assert any("moves the supports, and there are none" in one.text for one in found.faults)
+    with pytest.raises(faying.InputError, match="moves the supports, and there are none"):
+        faying.run(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (BASE + BASE, "two vibrations are called 'vibration'"),
+        (BASE.replace("psd", "psdd"), "did you mean psd"),
+        (BASE + 'sine = [["20 Hz", "1 g"], ["30 Hz", "1 g"]]\n', "either psd or sine"),
+        (BASE.replace('"80 Hz"', '"8 Hz"'), "let frequencies rise"),
+        (BASE.replace('"0.04 g^2/Hz"', "0.04"), "with its unit as text"),
+        ("[[vibration]]\npsd = 3\n", "with its unit as text"),
+        (BASE + 'points = ["0 mm"]\n', "list of points"),
+        ('[[vibration]]\npsd = "psd.csv"\n', "no file"),
+    ],
+)
+def test_faults_of_a_table_are_found_when_it_is_read(study, text, why):
+    with pytest.raises(faying.InputError, match=why):
+        Study.read(shaken(study, text))
+
+
+def test_a_file_of_a_study_belongs_to_it(study):
+    (study.parent / "psd.csv").write_text("frequency [Hz], psd [g^2/Hz]\n20, 0.01\n80, 0.04\n")
+    plan = Study.read(shaken(study, '[[vibration]]\npsd = "psd.csv"\n'))
+    assert (study.parent / "psd.csv") in plan.files
+    assert plan.vibrations[0].table.values[1] == pytest.approx(0.04 * 9.80665**2)
