@@ -12,13 +12,15 @@ from faying.result.fields import Recorded, in_units, listed, variable
 from faying.result.provenance import Provenance
 from faying.style import COLUMN, axes_of, colour, drawing, legend_above, new_figure, plain_numbers
 from faying.text import notes_row
-from faying.typing import Array
+from faying.typing import Array, Index
 from faying.units import GRAVITY, load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ESTIMATES = ("5 %", "best", "95 %")
+SHAKEN = 0.01  # of the greatest level: modes below it are not shown,
+NEAR_BAND = 1.2  # nor those farther from the band than by this factor, where others are nearer
 MAX_MODES = 8  # that a summary has a line for
 MAX_DRAWN = 6  # points, and modes, in one panel
 YEAR, HOUR = 31_557_600.0, 3600.0  # s
@@ -96,6 +98,14 @@ class VibrationResponse(Recorded):
         return "rms" if self.kind == "random" else "amplitude"
 
     @property
+    def shaken(self) -> Index:
+        """Indices of modes that are shaken: with a hundredth of the greatest level, near the band if any is."""
+        strong = self.level[1] > SHAKEN * self.level[1].max()
+        first, last = self.input_frequency[[0, -1]]
+        near = strong & (self.rest_frequency * NEAR_BAND > first) & (self.rest_frequency < NEAR_BAND * last)
+        return np.flatnonzero(near if near.any() else strong)
+
+    @property
     def life(self) -> Array:
         """Time [s] until each bolt fails, or sweeps until then (estimate, bolt); infinite without damage."""
         with np.errstate(divide="ignore"):
@@ -116,7 +126,7 @@ class VibrationResponse(Recorded):
         """Return a heading, and level, frequency and damping of the modes that are shaken most."""
         head = f"Vibration {self.name!r} of {self.title} at {load_text(self.preload)}, {self.words} values"
         rows = {}
-        for k in np.sort(np.argsort(self.level[1])[::-1][:MAX_MODES]).tolist():
+        for k in self.shaken[:MAX_MODES].tolist():
             low, best, high = self.level[:, k]
             rows[f"mode {k + 1}"] = (
                 f"{best:.3g} m/s2 ({low:.3g} to {high:.3g}) at {self.frequency[1, k]:.4g} Hz, "
@@ -164,7 +174,7 @@ class VibrationResponse(Recorded):
             axes[0].plot(self.line_frequency, best, color=colour(k), label=f"point {k + 1}")
         name = "PSD" if self.kind == "random" else "amplitude"
         axes[0].set(xscale="log", yscale="log", xlabel="frequency [Hz]", ylabel=f"{name} of acceleration [{shown}]")
-        for number, k in enumerate(np.sort(np.argsort(self.level[1])[::-1][:MAX_DRAWN]).tolist()):
+        for number, k in enumerate(self.shaken[:MAX_DRAWN].tolist()):
             axes[1].plot(self.curve_level[k], 100 * self.curve_damping[k], color=colour(number), label=f"mode {k + 1}")
             axes[1].plot(self.level[1, k], 100 * self.damping[1, k], "o", color=colour(number), ms=4)
         axes[1].set(

@@ -10,8 +10,6 @@ from faying.typing import Array
 from faying.units import GRAVITY, in_mm, load_text
 
 Rows = list[list[str]]
-SHOWN = 0.01  # of the greatest level: modes below it have no row,
-NEAR_BAND = 1.2  # nor those farther from the band than by this factor, where others are nearer
 HELP = (
     "Values are rms of random vibration (heads and margins at 3 sigma), amplitudes of a sweep. Level: acceleration "
     "where a mode moves most, of it alone. Head: transverse motion over that at which the head slides; above 1 a bolt "
@@ -33,10 +31,7 @@ def heading(found: VibrationResponse) -> str:
 
 def mode_rows(found: VibrationResponse) -> Rows:
     """One row for each mode that is shaken: level, frequency and damping that it reaches, with their ends."""
-    strong = found.level[1] > SHOWN * found.level[1].max()
-    first, last = found.input_frequency[[0, -1]]
-    near = strong & (found.rest_frequency * NEAR_BAND > first) & (found.rest_frequency < NEAR_BAND * last)
-    some = np.flatnonzero(near if near.any() else strong)
+    some = found.shaken
     return in_columns(
         ("mode", some + 1, "d"),
         ("at rest [Hz]", found.rest_frequency[some], ".2f"),
