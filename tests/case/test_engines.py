@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -84,7 +84,9 @@ def agree(one, other):
         a, b = getattr(one, field.name), getattr(other, field.name)
         if field.name in OWN:
             continue
-        if not (isinstance(b, np.ndarray) and b.dtype.kind == "f"):
+        if is_dataclass(b):
+            agree(a, b)
+        elif not (isinstance(b, np.ndarray) and b.dtype.kind == "f"):
             assert np.array_equal(a, b) if isinstance(b, np.ndarray) else a == b, field.name
         elif field.name.startswith(("interval", "wave")):
             assert a == pytest.approx(b, rel=IN_A_BASIS, abs=IN_A_BASIS, nan_ok=True), field.name
