@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from scipy.sparse import diags_array
+from scipy.sparse import csr_array, diags_array
 
 from faying.errors import NotConverged
-from faying.numerics.modal_reanalysis import ModalReanalysis, _sharper, nearby_modes
+from faying.numerics.modal_reanalysis import Measure, ModalReanalysis, _sharper, nearby_modes
 from faying.numerics.modes import lowest_modes
 from faying.numerics.solve import factorise
 
@@ -115,6 +115,21 @@ def test_a_mode_whose_shape_is_not_yet_known_is_watched_above_those_wanted(insid
     changed = pair(1e6, spring, inside)[0]
     wanted = lowest_modes(changed, M, 3, shift_frequency=5.0).frequencies
     assert ModalReanalysis(modes, K, M, rigid=0).under(changed, 3).frequencies == pytest.approx(wanted, rel=1e-7)
+
+
+def test_a_guessed_energy_is_not_below_one_that_others_have_shown():
+    """A residual that was stiff and turns soft, in pairs that move alike easily and against each other hardly."""
+    block = np.array([[2.0, -1.9], [-1.9, 2.0]])
+    K = csr_array(np.kron(np.eye(3), block))
+    measure = Measure(K.diagonal(), factorise(K), 3)
+    soft, stiff = np.array([1.0, 1.0]), np.array([1.0, -1.0])
+    left = np.zeros((6, 3))
+    for k, some in enumerate((soft, soft, stiff)):
+        left[2 * k : 2 * k + 2, k] = some
+    found, _ = measure.solved(left, np.ones(3), np.arange(3))
+    assert found == pytest.approx([2 / 0.1, 2 / 0.1, 2 / 3.9], rel=1e-9)
+    turned = np.concatenate([np.zeros(4), soft])[:, None]
+    assert measure.guessed(turned, np.ones(1), np.array([2]))[0] >= 2 / 0.1
 
 
 def test_it_is_found_after_a_basis_that_was_cut_back():

@@ -1,12 +1,19 @@
-"""Combinations of vectors in any layout, and the sizes of products."""
+"""Products with several vectors by MKL: those of SciPy, whatever the layout, and SciPy's where MKL cannot."""
 
 import numpy as np
 import pytest
 from scipy.sparse import csr_array, random_array
 
-from faying.numerics.product import ROWS, combined, product_of_sizes
+from faying.numerics import product as module
+from faying.numerics.product import ROWS, combined, product, product_of_sizes
 
 RNG = np.random.default_rng(7)
+MATRIX = csr_array(random_array((60, 45), density=0.2, rng=RNG, format="csr"))
+
+
+@pytest.fixture(autouse=True)
+def small_counts(monkeypatch):
+    monkeypatch.setattr(module, "LARGE", 0)
 
 
 def layouts():
@@ -16,6 +23,49 @@ def layouts():
     yield wide + 1j * wide[::-1]
     yield (wide + 1j).real
     yield wide.astype(np.float32)
+
+
+def test_it_is_that_of_scipy_for_any_layout_and_type():
+    for vectors in layouts():
+        before = vectors.copy()
+        found, wanted = product(MATRIX, vectors), MATRIX @ vectors
+        assert found.shape == wanted.shape
+        assert found == pytest.approx(wanted, rel=1e-6 if vectors.dtype == np.float32 else 1e-13, abs=1e-13)
+        assert np.array_equal(vectors, before)
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        MATRIX.tocsc(),
+        MATRIX.astype(np.float32),
+        MATRIX * (1 + 2j),
+        csr_array((MATRIX.data, MATRIX.indices.astype(np.int64), MATRIX.indptr.astype(np.int64)), shape=MATRIX.shape),
+        csr_array((60, 45)),
+        MATRIX[10:30],
+        MATRIX[:, ::-1],
+    ],
+    ids=["columns", "single", "complex", "long", "empty", "some rows", "unsorted"],
+)
+def test_matrices_of_all_kinds(matrix):
+    vectors = RNG.standard_normal((45, 4))
+    assert product(matrix, vectors) == pytest.approx(matrix @ vectors, rel=1e-6, abs=1e-6)
+
+
+def test_without_mkl(monkeypatch):
+    monkeypatch.setattr(module, "available", lambda: ("superlu",))
+    module._library.cache_clear()
+    try:
+        vectors = RNG.standard_normal((45, 4))
+        assert np.array_equal(product(MATRIX, vectors), MATRIX @ vectors)
+        assert module._library() is None
+    finally:
+        module._library.cache_clear()
+
+
+def test_vectors_of_another_length_are_refused():
+    with pytest.raises(ValueError):
+        product(MATRIX, np.ones((44, 3)))
 
 
 def test_combinations_of_columns_are_products_for_any_layout():

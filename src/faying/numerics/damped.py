@@ -12,11 +12,10 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.numerics.modal_reanalysis import MIN_NEW_SHARE, ModalReanalysis, energies
+from faying.numerics.modal_reanalysis import MIN_NEW_SHARE, Measure, ModalReanalysis
 from faying.numerics.modes import Modes
 from faying.numerics.product import combined, product
 from faying.numerics.signs import definite
-from faying.numerics.solve import Factorisation
 from faying.style import Summary
 from faying.typing import Array, Complex, Index
 
@@ -109,6 +108,7 @@ def damped_near(
             error=modes.error[rigid : rigid + count],
             shapes=definite(elastic[:, :count]).astype(complex),
         )
+    measure = near.measure(2 * count)
     lossy = np.flatnonzero(np.diff(loss.tocsr().indptr))
     inside = loss.tocsr()[lossy][:, lossy]
     for _ in range(ROUNDS):
@@ -124,7 +124,7 @@ def damped_near(
         else:
             miss = resisted + lossy_part * root + inertial * root**2
         size = np.abs(squared) * np.einsum("im,im->m", vectors.conj(), inertial).real
-        error, correction = _measured(near.modes.factorisation, miss, size, tolerance)
+        error, correction = _measured(measure, miss, size, tolerance)
         if error.max() < tolerance:
             return DampedModes(
                 frequencies=_frequency(squared, root, kind),
@@ -140,16 +140,20 @@ def damped_near(
     )
 
 
-def _measured(factor: Factorisation, miss: Complex, size: Array, tolerance: float) -> tuple[Array, Array]:
+def _measured(measure: Measure, miss: Complex, size: Array, tolerance: float) -> tuple[Array, Array]:
     """Estimated relative errors (m,) of eigenvalues, and what mends those beyond the tolerance (n, k).
 
-    miss: what the modes leave of the equations (n, m); size (m,): what an error is relative to.
+    miss: what the modes leave of the equations (n, m); size (m,): what an error is relative to; measure: of real parts
+    and imaginary parts (2 m).
     """
     parts, sizes = np.concatenate([miss.real, miss.imag], axis=1), np.tile(size, 2)
-    energy, solved = energies(factor, np.asfortranarray(parts), sizes)
-    error = energy.reshape(2, -1).sum(axis=0)
-    chosen = np.tile(~(error < tolerance), 2) & ~(energy < SLIGHT * tolerance)
-    return error, solved[:, chosen] / np.sqrt(sizes[chosen])
+    error = measure.guessed(parts, sizes, np.arange(len(sizes)))
+    poor = ~(error.reshape(2, -1).sum(axis=0) < tolerance)
+    chosen = np.flatnonzero(np.tile(poor, 2) & ~(error < SLIGHT * tolerance))
+    correction = parts[:, :0]
+    if len(chosen):
+        error[chosen], correction = measure.solved(np.asfortranarray(parts[:, chosen]), sizes[chosen], chosen)
+    return error.reshape(2, -1).sum(axis=0), correction / np.sqrt(sizes[chosen])
 
 
 def _frequency(squared: Complex, root: Complex, kind: str) -> Array:

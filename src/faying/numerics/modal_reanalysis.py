@@ -27,6 +27,7 @@ SEED = 20261124
 MIN_NEW_SHARE = 1e-10  # share of a new vector that must be new
 NOWHERE = np.zeros(0, dtype=np.int64), np.zeros((0, 0))  # unknowns, and the rows of a basis there
 NEIGHBOURS = 10  # modes that are taken to lie as near together as two that are found
+DOUBT = 3.0  # times by which the energy of a residual may have grown against that by the diagonal since the last round
 
 
 class ModalReanalysis:
@@ -51,10 +52,18 @@ class ModalReanalysis:
         self._looked, self._random = NOWHERE[0], np.random.default_rng(SEED)
         self._changed: tuple[Any, Any, Index] | None = None  # of the last stiffness
         self._at = NOWHERE
+        self.diagonal = stiffness.diagonal() + modes.shift * mass.diagonal()
+        self._measure = self.measure(0)
 
     def adopt_factor(self, factor: Factorisation, stiffness: Any) -> None:
         """Go on with the factorisation of another stiffness [N/m] (n, n), shifted alike; the basis stays."""
         self.modes = replace(self.modes, factorisation=factor, factorised=stiffness)
+        self.diagonal = stiffness.diagonal() + self.modes.shift * self.span.mass.diagonal()
+        self._measure = self.measure(0)
+
+    def measure(self, count: int) -> "Measure":
+        """What measures so many residuals by the factorisation at hand."""
+        return Measure(self.diagonal, self.modes.factorisation, count)
 
     def add(self, vectors: Array) -> None:
         """Take vectors (n, k) that are likely to be near modes to come, such as those of a stiffness between."""
@@ -97,6 +106,8 @@ class ModalReanalysis:
         targets = np.full(count + WATCHED, PLACED)
         targets[:count] = tolerance
         errors, converged = np.ones(len(targets)), np.zeros(len(targets))
+        if self._measure.count != len(targets):
+            self._measure = self.measure(len(targets))
         for done in range(rounds):
             values, inner = self.projected(stiffness)
             order = np.argsort(np.abs(values))
@@ -136,12 +147,16 @@ class ModalReanalysis:
         targets (w,); which (k,): of them.
         """
         errors, correction = np.zeros(len(squared)), []
-        for some in (which[part] for part in chunks(self.span.mass.shape[0], len(which))):
+        for some in (which[part] for part in chunks(len(self.diagonal), len(which))):
             left = _left_over(stiffness, self.span.mass, combined(self.span.vectors, mix[:, some]), squared[some])
-            errors[some], solved = energies(self.modes.factorisation, left, np.abs(squared[some]))
-            far = ~(errors[some] < targets[some] / 10)
-            if far.any():
-                correction.append(solved[:, far])
+            size = np.abs(squared[some])
+            errors[some] = self._measure.guessed(left, size, some)
+            far = ~(errors[some] < targets[some])
+            poor = some[far]
+            if len(poor):
+                left = left[:, far]  # the others' room is free before the solution takes its own
+                errors[poor], solved = self._measure.solved(left, size[far], poor)
+                correction.append(solved[:, errors[poor] > targets[poor] / 10])
         return errors[which], correction
 
     def projected(self, stiffness: Any) -> tuple[Array, Array]:
@@ -215,10 +230,37 @@ class ModalReanalysis:
             self._looked, self._at = NOWHERE[0], NOWHERE
 
 
-def energies(factor: Factorisation, left: Array, size: Array) -> tuple[Array, Array]:
-    """Energies of residuals (n, k) in the inverse of a factorised stiffness, over sizes (k,), and the solutions."""
-    solved = factor.solve(left)
-    return np.abs(np.einsum("ij,ij->j", left, solved)) / size, solved
+class Measure:
+    """Measures residuals by their energy in the inverse of a factorised stiffness.
+
+    That takes a solution. The energy in the inverse of the diagonal takes none and is some times less, and these times
+    hardly change from round to round and from stiffness to stiffness: a mode that has found its place by it needs no
+    solution.
+
+    Args:
+        diagonal: of the factorised matrix (n,).
+        factor: its factorisation.
+        count: residuals that are measured again and again, each known by its number.
+    """
+
+    def __init__(self, diagonal: Array, factor: Factorisation, count: int) -> None:
+        self._diagonal, self._factor, self.count = diagonal, factor, count
+        self._ratio = np.full(count, np.inf)  # of the energies of the last residual of each
+
+    def guessed(self, left: Array, size: Array, which: Index) -> Array:
+        """Energies over sizes (k,) of residuals (n, k), by the diagonal; which (k,): their numbers."""
+        typical = np.median(self._ratio)
+        return np.asarray(DOUBT * np.maximum(self._ratio[which], typical) * self._rough(left, size))
+
+    def solved(self, left: Array, size: Array, which: Index) -> tuple[Array, Array]:
+        """Energies over sizes (k,) of residuals (n, k), one or more, and the solutions (n, k)."""
+        answer = self._factor.solve(left)
+        found = np.abs(np.einsum("ij,ij->j", left, answer)) / size
+        self._ratio[which] = found / self._rough(left, size)
+        return found, answer
+
+    def _rough(self, left: Array, size: Array) -> Array:
+        return np.array([column @ (column / self._diagonal) for column in left.T]) / size
 
 
 def _left_over(stiffness: Any, mass: Any, shapes: Array, squared: Array) -> Array:
