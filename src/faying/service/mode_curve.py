@@ -12,10 +12,10 @@ import numpy as np
 
 from faying.typing import Array, Complex, Mask
 
-# Gauss-Laguerre nodes of the power spent, which has an exponential density: 24 hold the rms to 1e-5 where the damping
-# goes from one plateau to another over a decade
+# Gauss-Laguerre nodes of the power spent, which has an exponential density: with 24 the rms is off by up to 1.2 %, the
+# damping by 0.7 %, where slip goes from one plateau to another
 NODES = 24
-FINE = 3000  # amplitudes between which the power spent is interpolated, in logarithms: to 1e-5
+FINE = 3000  # amplitudes between which the power spent is interpolated, in logarithms
 # of the first and the last known amplitude: there the power spent is the square of the amplitude, to 1e-3 and 1e-6, and
 # it is so beyond, in steps of its logarithm
 FIRST_RATIO, LAST_RATIO, LOG_REACH = 1e-3, 1e3, 100.0
