@@ -38,7 +38,7 @@ from faying.service.vibration import vibrations_of
 from faying.study.keys.varied import number_of
 from faying.study.study import Study
 from faying.text import listed
-from faying.typing import Array
+from faying.typing import Array, Index
 
 LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
 NOT_ZERO = 1e-3  # of the first frequency: a rigid motion above it has cost 1e-6 of that mode's eigenvalue, and is noted
@@ -193,7 +193,6 @@ def collect(
         **_outline(structure, shapes, states),
         **_made_of(structure),
         **_dowels(structure, states),
-        **_stress(structure, states),
         **alternative_fields(alternatives, len(states), study.modes.count),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
@@ -270,7 +269,7 @@ def _at_levels(case: Case, states: Sequence[LoadedCase]) -> dict[str, Any]:
 
 
 def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[LoadedCase]) -> dict[str, Any]:
-    """Fields of the result on the outer surface."""
+    """Fields of the result on the outer surface, and the stress of the parts."""
     outer, mass = structure.surface(), structure.dynamic_matrices[1]
     lagging = [s.damped.scaled_shapes(mass)[1].T.reshape(len(s.damped.frequencies), -1, 3) for s in states]
     return {
@@ -281,6 +280,7 @@ def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[Loa
         "faces": outer.faces,
         "shapes": np.stack([shape[:, outer.nodes] for shape in shapes]),
         "shapes_imaginary": np.stack([shape[:, outer.nodes] for shape in lagging]),
+        **_stress(structure, states, outer.nodes),
     }
 
 
@@ -314,12 +314,12 @@ def _dowels(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any
     }
 
 
-def _stress(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any]:
-    """Fields of the result that say what the preload does to the parts."""
+def _stress(structure: Structure, states: Sequence[LoadedCase], nodes: Index) -> dict[str, Any]:
+    """Fields of the result that say what the preload does to the parts, and to these nodes of the outer surface."""
     moved = np.stack([s.preload.displacement for s in states], axis=1)
     found = part_stresses(structure.mesh, structure.materials, moved)
     size, place, spread = greatest_stresses(found, structure.mesh.points)
-    outer = at_outline(found, len(structure.mesh.points), structure.surface().nodes)
+    outer = at_outline(found, len(structure.mesh.points), nodes)
     return {
         "stress": size.T,
         "stress_place": np.moveaxis(place, 2, 0),

@@ -143,9 +143,9 @@ def dirlik(curve: FatigueCurve, moments: Array) -> float:
     return peaks * (first + second + third)
 
 
-def sweep_cycles(first: float, last: float, rate: float) -> float:
-    """Cycles of a sine sweep from one frequency [Hz] to another at a rate [octaves/min]."""
-    return 60 * abs(last - first) / (rate * log(2))
+def sweep_cycles(first: Array | float, last: Array | float, rate: float) -> Array:
+    """Cycles of a sine sweep from frequencies [Hz] to others at a rate [octaves/min]."""
+    return np.asarray(60 * np.abs(last - first) / (rate * log(2)))
 
 
 def bending_modulus(area: float) -> float:

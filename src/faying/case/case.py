@@ -418,8 +418,7 @@ def build(study: Study) -> Structure:
     return structure_of(study, checked_mesh(study), surfaces, laws)
 
 
-def bare(study: Study, *, vibrations: bool = False) -> Study:
-    """The study with its preloads and modes alone; vibrations: and with what shakes it."""
+def bare(study: Study) -> Study:
+    """The study with its preloads and modes alone."""
     modes = replace(study.modes, levels=(), intervals=False)
-    shaken = study.vibrations if vibrations else ()
-    return replace(study, response=None, hammer=None, backbone=None, alternatives=(), modes=modes, vibrations=shaken)
+    return replace(study, response=None, hammer=None, backbone=None, alternatives=(), modes=modes, vibrations=())

@@ -7,6 +7,7 @@ import numpy as np
 
 from faying.case.case import Case
 from faying.errors import InputError
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
 from faying.microslip.level_basis import level_basis
@@ -60,16 +61,10 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> LevelD
     # springs per node do not slip
     if not choice.levels or any(joint.per_node for joint in structure.joints):
         return None
-    assumed = any(joint.friction is None for joint in structure.joints)
-
-    def laws(friction: float, springs: int) -> list[Microslip]:
-        """Cut the law of each joint; friction: where nothing is said of it."""
-        given = [friction if joint.friction is None else joint.friction for joint in structure.joints]
-        return cut_laws(structure, preload, given, springs)
-
+    assumed = assumes_friction(structure)
     try:
-        coarse = [laws(friction, SPRINGS_AT_ENDS) for friction in FRICTION]
-        middle_laws = laws(FRICTION[1], SPRINGS)
+        coarse = [laws_at(structure, preload, friction, SPRINGS_AT_ENDS) for friction in FRICTION]
+        middle_laws = laws_at(structure, preload, FRICTION[1], SPRINGS)
     except InputError:
         return None
     basis = level_basis(structure, preload, found, coarse[: 2 if assumed else 1], [choice.levels] * choice.count)
@@ -78,9 +73,7 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> LevelD
         return level_model(structure, preload, basis, laws).at(choice.levels, choice.count)
 
     middle = at(middle_laws)
-    rest = (found.damped.loss_factors / 2,) * 3 if structure.predicts_loss else REST
-    # a loss at rest moves the complex modes as well
-    moved = found.damped.frequencies / found.modes.frequencies[case.rigid_count :][: choice.count]
+    rest, moved = rest_damping(structure, found), moved_by_loss(structure, found)
     slip = least = most = middle.damping
     if assumed:
         ends = [at(coarse[0]).damping, np.zeros_like(slip)]
@@ -97,6 +90,41 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> LevelD
         slip=slip,
         error=middle.error,
     )
+
+
+def assumes_friction(structure: BoltedStructure) -> bool:
+    """Whether the friction of a joint has its prior, since nothing is said of it."""
+    return any(joint.friction is None for joint in structure.joints)
+
+
+def laws_at(structure: BoltedStructure, preload: PreloadState, friction: float, springs: int) -> list[Microslip]:
+    """The law of each joint, cut; friction: where nothing is said of it. Raises InputError as `Microslip.cut`."""
+    given = [friction if joint.friction is None else joint.friction for joint in structure.joints]
+    return cut_laws(structure, preload, given, springs)
+
+
+def rest_damping(structure: BoltedStructure, found: Vibration) -> Array:
+    """Damping ratio at rest [-] (3, m), 5 %, median and 95 %: what the laws predict, or else its prior."""
+    if structure.predicts_loss:
+        return np.tile(found.damped.loss_factors / 2, (3, 1))
+    return np.tile(np.array(REST)[:, None], (1, len(found.damped.frequencies)))
+
+
+def moved_by_loss(structure: BoltedStructure, found: Vibration) -> Array:
+    """Frequencies of the complex modes over those of the real ones (m,): a loss at rest moves them."""
+    count = len(found.damped.frequencies)
+    return np.asarray(found.damped.frequencies / found.modes.frequencies[structure.rigid_count :][:count])
+
+
+def assumed_words(*, friction: bool, rest: bool) -> list[str]:
+    """What is assumed of friction and of damping at rest."""
+    words = []
+    if friction:
+        words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")
+    if rest:
+        low, middle, high = (f"{100 * one:g}" for one in REST)
+        words.append(f"{middle} % at rest, between {low} and {high} %")
+    return words
 
 
 def _why_none(case: Case) -> str:
@@ -121,17 +149,11 @@ def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool
     if any(one is None for one in found):
         return [Note(code="no-level-damping", text=_why_none(case))]
     notes = _unanswered(case, [one for one in found if one is not None])
-    words = []
-    if any(joint.friction is None for joint in case.structure.joints):
-        words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")
-    if lossless:
-        low, middle, high = (f"{100 * one:g}" for one in REST)
-        words.append(f"{middle} % at rest, between {low} and {high} %, as bolted structures have it")
+    words = assumed_words(friction=assumes_friction(case.structure), rest=lossless)
     if not words:
         return notes
-    text = (
-        f"damping at levels of acceleration assumes {' and '.join(words)}; a ring-down of the structure narrows it most"
-    )
+    assumed = " and ".join(words) + ", as bolted structures have it" * lossless
+    text = f"damping at levels of acceleration assumes {assumed}; a ring-down of the structure narrows it most"
     return [*notes, Note(code="level-damping", text=text)]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from faying.bolt.bolt import Bolt, FittedBolt
 from faying.bolt.fatigue import FatigueCurve
 from faying.joint.bolted import BoltedStructure
-from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of
+from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of, frictions_of
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -42,14 +42,14 @@ def service_bolts(structure: BoltedStructure, study: Study | None = None) -> tup
     """The bolts of a structure; what a study says for the sheet of a bolt comes before its own friction."""
     out = []
     for fitted in structure.fitted_bolts:
-        bolt, friction, size, compliance = fitted.bolt, NAN, None, NAN
+        bolt, size, compliance = fitted.bolt, None, NAN
         choice = BoltSheetChoice() if study is None else choice_of(study.bolt_sheets, bolt.name)
         if isinstance(bolt, Bolt):
-            friction = NAN if bolt.friction is None else bolt.friction[1]
             size = bolt.diameter if bolt.metric is None else bolt.metric.diameter
         if isinstance(fitted, FittedBolt):
             compliance = fitted.guided_compliance
-        friction = friction if choice.head_friction is None else choice.head_friction
+        _, head = frictions_of(choice, bolt)
+        friction = NAN if head is None else head
         curve = None if size is None else FatigueCurve.iec(size) if choice.fatigue == "iec" else FatigueCurve.vdi(size)
         out.append(ServiceBolt(head_friction=friction, fatigue=curve, guided_compliance=compliance))
     return tuple(out)

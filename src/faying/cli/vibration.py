@@ -1,5 +1,6 @@
 """faying vibration STUDY.toml: what the structure does in service."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ def command(study: Path, out: Path | None, plot: Path | None, as_json: bool, pro
     plan = Study.read(study)
     if not plan.vibrations:
         raise InputError(f"{study} has no [[vibration]]; add one with psd or sine")
-    plan = bare(plan, vibrations=True)
+    plan = replace(bare(plan), vibrations=plan.vibrations)
     with Shown("vibration", progress, stages(plan)) as report:
         found = run(plan, report=report).vibrations
     files = [] if out is None else [one.save(file) for one, file in zip(found, names(out, len(found)), strict=True)]

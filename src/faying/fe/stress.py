@@ -8,6 +8,7 @@ import numpy as np
 from faying.fe.elasticity import Solid
 from faying.fe.elements import SOLIDS
 from faying.fe.elements.element import Element, gradients_in_space
+from faying.fe.sides import nodes_of
 from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index
 
@@ -66,7 +67,7 @@ def part_stresses(
     moved = motion.reshape(len(mesh.points), 3, -1)
     out = {}
     for name, blocks in mesh.parts.items():
-        nodes = np.unique(np.concatenate([cells.ravel() for cells in blocks]))
+        nodes = nodes_of(blocks)
         place = np.full(len(mesh.points), -1)
         place[nodes] = np.arange(len(nodes))
         weight, total = np.zeros(len(nodes)), np.zeros((len(nodes), 6, moved.shape[2]))

@@ -19,6 +19,7 @@ from faying.text import listed
 T = TypeVar("T")
 _SOLID = re.compile(r"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\s*\(")
 # entities that name the file of a part, and the name in them
+KERNEL_SUFFIXES = (".step", ".stp")  # that the kernel takes for STEP
 _REFERRING = ("DOCUMENT_FILE", "APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", "EXTERNAL_SOURCE")
 _OUTSIDE = re.compile(rf"\b(?:{'|'.join(_REFERRING)})\s*\([^;]*;")
 _FILE = re.compile(r"'((?:[^']|'')+\.(?:stp|step|p21))'", re.IGNORECASE)
@@ -123,16 +124,17 @@ def _gathered(files: Sequence[Path], texts: Sequence[str], folder: Path) -> Path
 
     Args:
         files: it and all that it refers to; texts: of each.
-        folder: where the copies go.
+        folder: where the copies go; a file alone that has this suffix needs none.
     """
+    if len(files) == 1 and files[0].suffix in KERNEL_SUFFIXES:
+        return files[0]
     places = {file.resolve(): f"{number}.step" for number, file in enumerate(files)}
     for file, text in zip(files, texts, strict=True):
 
         def place(found: re.Match[str], file: Path = file) -> str:
             return f"'{places[named_by(file, decoded(found[1])).resolve()]}'"
 
-        alone = len(files) == 1
-        here = text if alone else _OUTSIDE.sub(lambda entity: _FILE.sub(place, entity[0]), text)
+        here = text if len(files) == 1 else _OUTSIDE.sub(lambda entity: _FILE.sub(place, entity[0]), text)
         (folder / places[file.resolve()]).write_text(here, encoding="latin-1")
     return folder / places[files[0].resolve()]
 

@@ -5,13 +5,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faying.case.level_damping import FRICTION, REST, SPRINGS_AT_ENDS
+from faying.case.level_damping import (
+    FRICTION,
+    SPRINGS_AT_ENDS,
+    assumes_friction,
+    laws_at,
+    moved_by_loss,
+    rest_damping,
+)
 from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
 from faying.microslip.level_basis import level_basis
-from faying.microslip.levels import SPRINGS, LevelModel, cut_laws, level_model
+from faying.microslip.levels import SPRINGS, LevelModel, level_model
 from faying.microslip.microslip import Microslip
 from faying.service.mode_curve import ModeCurve
 from faying.typing import Array
@@ -50,13 +57,6 @@ class CurveSets:
         return tuple(replace(c, rest=float(z)) for c, z in zip(self.best, self.rest[end], strict=True))
 
 
-def rest_damping(structure: BoltedStructure, found: Vibration) -> Array:
-    """Damping ratio at rest [-] (3, m): what the laws predict, or else the prior of bolted structures."""
-    if structure.predicts_loss:
-        return np.tile(found.damped.loss_factors / 2, (3, 1))
-    return np.tile(np.array(REST)[:, None], (1, len(found.damped.frequencies)))
-
-
 def curve_sets(
     structure: BoltedStructure,
     preload: PreloadState,
@@ -77,7 +77,7 @@ def curve_sets(
     speeds = 2 * np.pi * found.damped.frequencies
     plain = tuple(ModeCurve(speed=float(w), rest=float(z)) for w, z in zip(speeds, rest[1], strict=True))
     slips = bool(structure.joints) and not any(joint.per_node for joint in structure.joints)
-    laws = _laws(structure, preload, SPRINGS_AT_ENDS) if slips else {}
+    laws = _laws(structure, preload) if slips else {}
     if not laws:
         return CurveSets(best=plain, least=None, most=None, rest=rest)
     lossless = [replace(c, rest=float(z)) for c, z in zip(plain, rest[0], strict=True)]
@@ -91,8 +91,8 @@ def curve_sets(
         for k in range(len(scale))
     ]
     basis = level_basis(structure, preload, found, list(laws.values())[:2], levels)
-    laws[FRICTION[1]] = _laws(structure, preload, SPRINGS, FRICTION[1:2])[FRICTION[1]]
-    moved = found.damped.frequencies / found.modes.frequencies[structure.rigid_count :][: len(speeds)]
+    laws[FRICTION[1]] = laws_at(structure, preload, FRICTION[1], SPRINGS)
+    moved = moved_by_loss(structure, found)
     sets, ended = {}, set()
     for mu, own in laws.items():
         model = level_model(structure, preload, basis, own)
@@ -113,18 +113,16 @@ def curve_sets(
     )
 
 
-def _laws(
-    structure: BoltedStructure, preload: PreloadState, springs: int, frictions: Sequence[float] = FRICTION
-) -> dict[float, list[Microslip]]:
-    """The laws cut into sliders by the friction of joints that give none; only the median where each gives its own."""
-    given = [joint.friction for joint in structure.joints]
-    out = {}
-    for mu in frictions if None in given else FRICTION[1:2]:
-        try:
-            out[mu] = cut_laws(structure, preload, [mu if one is None else one for one in given], springs)
-        except InputError:  # a law has no stiffness that slips
-            return {}
-    return out
+def _laws(structure: BoltedStructure, preload: PreloadState) -> dict[float, list[Microslip]]:
+    """The laws cut coarsely, by the friction of joints that give none; at the median alone where each gives its own.
+
+    None at all where a law has no stiffness that slips.
+    """
+    frictions = FRICTION if assumes_friction(structure) else FRICTION[1:2]
+    try:
+        return {mu: laws_at(structure, preload, mu, SPRINGS_AT_ENDS) for mu in frictions}
+    except InputError:
+        return {}
 
 
 def _march(
@@ -143,26 +141,26 @@ def _march(
     """
     points: list[tuple[float, float, float]] = []
     level = LOWEST * needs(curve) * scale
+    cycle = model.cycle(level, mode)
     for _ in range(MOST_DOWN):
-        cycle = model.cycle(level, mode)
         if cycle.damping < SLIGHT * curve.rest or level == 0:  # False where there is no answer
             break
         level /= DOWN
-    while level > 0:
         cycle = model.cycle(level, mode)
+    while level > 0:
         steep = points and cycle.damping > max(SLIGHT * curve.rest, points[-1][2] * step**STEEP)
         if (steep or (points and not np.isfinite(cycle.frequency))) and step > FINEST_STEP:
             level /= step
             step = np.sqrt(step)
-            level *= step
-            continue
-        if not np.isfinite(cycle.frequency):
+        elif not np.isfinite(cycle.frequency):
             return curve, True
-        amplitude = float(np.linalg.norm(cycle.motion[1]))
-        points.append((amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping))
-        amplitudes, speeds, slips = np.array(points).T
-        curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
-        if amplitude >= needs(curve):
-            break
+        else:
+            amplitude = float(np.linalg.norm(cycle.motion[1]))
+            points.append((amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping))
+            amplitudes, speeds, slips = np.array(points).T
+            curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
+            if amplitude >= needs(curve):
+                break
         level *= step
+        cycle = model.cycle(level, mode)
     return curve, False

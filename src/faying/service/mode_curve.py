@@ -6,7 +6,7 @@ q is the coordinate of a mass-normalised shape: q'' + 2 zeta(a) omega(a) q' + om
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,8 +28,7 @@ STEPS = 400  # of amplitude, among which a sine's answers are sought: a step is 
 FARTHEST = 4.0  # decades of amplitude below the resonance at rest in which they are sought
 
 
-@dataclass(frozen=True, kw_only=True)
-class RandomLevel:
+class RandomLevel(NamedTuple):
     """What a mode does under noise.
 
     Args:
@@ -146,26 +145,27 @@ class ModeCurve:
         |f| = a |omega(a)^2 - Omega^2 + 2 i zeta(a) omega(a) Omega| may have several amplitudes: the greatest is taken,
         which a slow sweep reaches from one side; there the second answer is True.
         """
-
-        def resisted(w: Any, z: Any) -> Complex:
-            return np.asarray(w**2 - speeds**2 + 2j * z * w * speeds)
-
-        at_rest = force / resisted(self.speed, self.rest)
+        at_rest = force / resistance(self.speed, self.rest, speeds)
         most = float(np.abs(at_rest).max(initial=0.0))
         if not len(self.amplitudes) or most == 0:
             return at_rest, np.zeros(len(speeds), dtype=bool)
         a = most * np.logspace(-FARTHEST, 1, STEPS)[:, None]
-        over = a * np.abs(resisted(*self.at(a))) > force  # the amplitude asks for more force
+        over = a * np.abs(resistance(*self.at(a), speeds)) > force  # the amplitude asks for more force
         crossed = over[1:] & ~over[:-1]
         last = STEPS - 2 - np.argmax(crossed[::-1], axis=0)
         any_crossed = crossed.any(axis=0)  # else it lies below all steps, at rest
         low, high = a[last, 0], a[last + 1, 0]
         for _ in range(40):  # bisection to rounding
             middle = np.sqrt(low * high)
-            more = middle * np.abs(resisted(*self.at(middle))) > force
+            more = middle * np.abs(resistance(*self.at(middle), speeds)) > force
             low, high = np.where(more, low, middle), np.where(more, middle, high)
-        found = force / resisted(*self.at(np.where(any_crossed, high, 0.0)))
+        found = force / resistance(*self.at(np.where(any_crossed, high, 0.0)), speeds)
         return found, np.asarray(crossed.sum(axis=0) > 1)
+
+
+def resistance(speed: Any, damping: Any, drive: Array) -> Complex:
+    """Force over coordinate of a mode [1/s2] at circular frequencies [rad/s]: w^2 - W^2 + 2 i zeta w W."""
+    return np.asarray(speed**2 - drive**2 + 2j * damping * speed * drive)
 
 
 @cache

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from faying.service.mode_curve import resistance
 from faying.study.vibration import InputTable
 from faying.typing import Array, Complex
 
@@ -31,9 +32,8 @@ def rule(table: InputTable, speeds: Array, dampings: Array) -> tuple[Array, Arra
 
 
 def resonance(speed: Array | float, damping: Array | float, frequencies: Array) -> Complex:
-    """The coordinate of modes (m, n) [s2] under a unit force of frequencies [Hz] (n,): 1/(w^2 - W^2 + 2 i zeta w W)."""
-    w, z, drive = np.atleast_1d(speed)[:, None], np.atleast_1d(damping)[:, None], 2 * np.pi * frequencies
-    return np.asarray(1 / (w**2 - drive**2 + 2j * z * w * drive))
+    """The coordinate of modes (m, n) [s2] under a unit force of frequencies [Hz] (n,)."""
+    return 1 / resistance(np.atleast_1d(speed)[:, None], np.atleast_1d(damping)[:, None], 2 * np.pi * frequencies)
 
 
 def variance(table: InputTable, force: float, speed: float, damping: float) -> float:

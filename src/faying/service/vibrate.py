@@ -3,14 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from math import log
 from typing import Any
 
 import numpy as np
 
 from faying.bolt.bolt import fatigue_area
-from faying.bolt.fatigue import FatigueCurve, bending_modulus, dirlik
-from faying.case.level_damping import FRICTION
+from faying.bolt.fatigue import FatigueCurve, bending_modulus, dirlik, sweep_cycles
+from faying.case.level_damping import FRICTION, assumed_words
 from faying.case.service_bolts import ServiceBolt, head_frictions
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
@@ -158,7 +157,7 @@ def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> 
     excited, table = given.excited, given.excited.excitation.table
     forces = np.abs(excited.force[excited.rigid :])
     levels = [c.balance(partial(variance, table, f)) for c, f in zip(curves, forces.tolist(), strict=True)]
-    sigmas, speeds, dampings = np.array([(one.sigma, one.speed, one.damping) for one in levels]).T
+    sigmas, speeds, dampings = np.array(levels).T
     frequencies, weights = rule(table, speeds, dampings)
     coordinates = _coordinates(excited, speeds, dampings, frequencies)
     density = weights * table.at(frequencies)
@@ -259,7 +258,8 @@ def _swept_damage(curve: FatigueCurve | None, stress: Array, frequencies: Array)
     """Damage of a sweep [-] at one octave a minute, at the worst place; stress: amplitudes (k, n) [Pa]."""
     if curve is None or np.isnan(stress).any():
         return float("nan")
-    return 60 / log(2) * max(float(np.trapezoid(1 / curve.cycles(one), frequencies)) for one in stress)
+    cycles, each = sweep_cycles(frequencies[:-1], frequencies[1:], 1.0), 1 / curve.cycles(stress)
+    return float(((each[:, 1:] + each[:, :-1]) / 2 @ cycles).max())
 
 
 def _along(excited: Excited, coordinates: Complex, amplitude: Array | float, frequencies: Array) -> Complex:
@@ -411,10 +411,8 @@ def _curves(given: _Answering, curves: Sequence[ModeCurve], found: Mapping[str, 
         at = np.array([c.at(row) for c, row in zip(curves, amplitudes, strict=True)])
         return amplitudes * at[:, 0] ** 2 * (scale / speeds**2)[:, None], at[:, 1]
     powers = 2 * (found["damping"][1] * speeds**3)[:, None] * amplitudes**2
-    levels = [[c.under(float(p)) for p in row] for c, row in zip(curves, powers, strict=True)]
-    sigma, speed, damping = np.moveaxis(
-        np.array([[(one.sigma, one.speed, one.damping) for one in row] for row in levels]), -1, 0
-    )
+    levels = np.array([[c.under(float(p)) for p in row] for c, row in zip(curves, powers, strict=True)])
+    sigma, speed, damping = np.moveaxis(levels, -1, 0)
     return sigma * speed**2 * (scale / speeds**2)[:, None], damping
 
 
@@ -441,12 +439,7 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
     if np.any(found.get("jumps", np.zeros(1)) > 0):
         text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
         out.append(Note(code="vibration-jumps", text=text))
-    words = []
-    if sets.least is not None:
-        words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")
-    if not given.base.structure.predicts_loss:
-        low, middle, high = (f"{100 * one:g}" for one in sets.rest[:, 0])
-        words.append(f"{middle} % at rest, between {low} and {high} %")
+    words = assumed_words(friction=sets.least is not None, rest=not given.base.structure.predicts_loss)
     if words:
         out.append(Note(code="level-damping", text=f"damping in service assumes {' and '.join(words)}"))
     text = (

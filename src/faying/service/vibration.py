@@ -19,13 +19,13 @@ from faying.study.vibration import Excitation
 def vibrations_of(case: Case, state: LoadedCase) -> tuple[VibrationResponse, ...]:
     """The answers of a case under one preload to all that its study shakes it with."""
     structure, study = case.structure, case.study
-    stiffness = (structure.dynamic_matrices[0] + structure.joint_stiffness(state.springs)).tocsr()
+    stiffness, loss = structure.coupled(state.springs)
     base = Shaken(
         title=study.title,
         structure=structure,
         preload=state.preload,
         springs=state.springs,
-        found=Vibration(modes=state.modes, damped=state.damped, stiffness=stiffness, loss=None),
+        found=Vibration(modes=state.modes, damped=state.damped, stiffness=stiffness, loss=loss),
         bolts=service_bolts(structure, study),
         provenance=provenance(study),
     )

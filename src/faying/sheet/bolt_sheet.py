@@ -27,7 +27,7 @@ from faying.result.bolts import BoltNumbers
 from faying.sheet.bolt_loads import BoltLoad, bolt_loads
 from faying.sheet.rows import Quantity, Row, evaluate
 from faying.sheet.steps import SHEAR, steps
-from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of
+from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of, frictions_of
 from faying.study.study import Study
 from faying.units import show
 
@@ -265,16 +265,12 @@ def _thread(bolt: Bolt | SolidBolt) -> list[Quantity]:
 
 def _tightening(study: Study, bolt: Bolt | SolidBolt, choice: BoltSheetChoice, force: float) -> list[Quantity]:
     scatter, origin = preload_scatter(study, bolt.name, choice)
-    stated = getattr(bolt, "friction", None) or (None, None)
     out = [
         _quantity("F_V", "preload", "N", force, ""),
         _quantity("s", f"scatter of the preload, {origin}", "", scatter, ""),
     ]
-    for symbol, where, given, of_bolt in (
-        ("mu_G", "in the thread", choice.thread_friction, stated[0]),
-        ("mu_K", "under the head", choice.head_friction, stated[1]),
-    ):
-        value = given if given is not None else of_bolt
+    places = ("mu_G", "in the thread"), ("mu_K", "under the head")
+    for (symbol, where), value in zip(places, frictions_of(choice, bolt), strict=True):
         origin = "" if value is not None else ", default: middle of class B of VDI 2230, Table A5"
         out.append(_quantity(symbol, f"friction {where}{origin}", "", value or DEFAULT_FRICTION, ""))
     return out

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from faying.bolt.bolt import BOLT_FRICTION
+from faying.bolt.bolt import BOLT_FRICTION, Bolt
+from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.tightening import tightening
 from faying.errors import InputError
 from faying.materials import MOST_FRICTION
@@ -81,6 +82,16 @@ class BoltSheetChoice:
         if way is not None and choice.tightening_factor is not None:
             table.faults.add(f"{table.where} has both tightening and tightening_factor; give one of them")
         return choice
+
+
+def frictions_of(choice: BoltSheetChoice, bolt: Bolt | SolidBolt) -> tuple[float | None, float | None]:
+    """Friction in the thread and under the head of a bolt [-]: of its sheet, else its own; None where not said."""
+    own = bolt.friction if isinstance(bolt, Bolt) else None
+    thread, head = own or (None, None)
+    return (
+        thread if choice.thread_friction is None else choice.thread_friction,
+        head if choice.head_friction is None else choice.head_friction,
+    )
 
 
 def choice_of(choices: Sequence[BoltSheetChoice], bolt: str) -> BoltSheetChoice:
