@@ -8,7 +8,7 @@ from faying.contact.response import Response
 class Given:
     """What a joint asks of a contact law, from functions of pressure: k_n, k_t [Pa/m], loss_n, loss_t [-]."""
 
-    source, least_pressure, assumptions = "this test", 0.0, ()
+    source, least_pressure, assumptions, memory = "this test", 0.0, (), None
 
     def __init__(self, name="given", greatest_pressure=1e9, **given):
         self.name, self.greatest_pressure, self.given = name, greatest_pressure, given

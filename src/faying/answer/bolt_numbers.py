@@ -96,7 +96,7 @@ def _embedding(structure: Structure, found: Clamping, state: LoadedCase) -> Arra
     """
     out = np.full((2, len(structure.joints), len(structure.fitted_bolts)), NAN)
     for number, (joint, springs, spread) in enumerate(
-        zip(structure.joints, state.springs, found.traction, strict=True)
+        zip(structure.under(state.preload).joints, state.springs, found.traction, strict=True)
     ):
         bounds = joint.law.lasting_approach(springs.pressure)
         if bounds is not None and not joint.per_node:

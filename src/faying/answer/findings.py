@@ -23,7 +23,7 @@ def falling(case: Case, states: Sequence[LoadedCase]) -> Iterator[Note]:
     for before, after in pairwise(states):
         change = after.damped.frequencies / before.damped.frequencies - 1
         down = np.flatnonzero(change < -FALL)
-        if not len(down):
+        if not len(down) or after.load < before.load:
             continue
         area = sum(joint.interface.area for joint in case.structure.joints)
         less = more = 0.0

@@ -195,7 +195,7 @@ def level_curves(
     (mu,) = friction_of(study, replace(choice, friction=choice.friction[:1]))
     first, last = choice.amplitude
     levels = np.geomspace(first, last, max(2, round(EACH_DECADE * np.log10(last / first)) + 1))
-    index = preload_index(study.loads, load)
+    index = preload_index(study.loads, load, names=study.load_names)
     found = _bare(study, index, mu, tuple(levels.tolist()), report)
     if found.level_slip is None or found.level_frequencies is None or found.level_error is None:
         raise InputError("no joint can slip: its law has no tangential stiffness, or its springs are per node")

@@ -181,6 +181,8 @@ def collect(
     result = Result(
         title=study.title,
         loads=case.loads,
+        carried=_carried(study),
+        settled=study.is_settled,
         free=bounds[0],
         bonded=bounds[1],
         rigid=rigid,
@@ -214,6 +216,12 @@ def collect(
         return result
     full = next((s.test_response for s in states if s.test_response is not None), None)
     return replace(result, hammer=case.hammer.compared(result, full))
+
+
+def _carried(study: Study) -> Array | None:
+    """Greatest preload [N] before each; None where all are first loading."""
+    carried = np.array([one.carried for one in study.preloads])
+    return carried if np.any(carried) else None
 
 
 def _bolts(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:

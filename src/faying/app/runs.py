@@ -98,7 +98,7 @@ class Runs:
         other = sorted(name for name in files[0] if name in files[1] and files[0][name] != files[1][name])
         return {
             "preloads": list(map(load_text, found.preloads)),
-            "shared": [load_text(results[0].loads[at]) for at, _ in shared_preloads(*results)],
+            "shared": [results[0].load_names[at] for at, _ in shared_preloads(*results)],
             "changes": [*changes(*texts), *([name, "file", "other content"] for name in other)],
             "modes": found.mode_rows(),
             "joints": found.joint_rows(),
@@ -127,7 +127,7 @@ class Runs:
                 self._said[name] = facts | {
                     "title": result.title,
                     "laws": list(laws),
-                    "preloads": [load_text(load) for load in result.loads],
+                    "preloads": list(result.load_names),
                     "study": result.provenance.study,
                 }
         return dict(self._said[name])

@@ -229,7 +229,8 @@ def backbone(
     if not many and len(choice.laws) > 1:
         given = ", ".join(one.model for one in choice.laws)
         raise InputError(f"[backbone] lists the laws {given}: give one of them, or the list for a tuple of curves")
-    curves = backbones(study, choice, loads=[preload_index(study.loads, load)], out=out, report=report)
+    index = preload_index(study.loads, load, names=study.load_names)
+    curves = backbones(study, choice, loads=[index], out=out, report=report)
     return curves if many else curves[0]
 
 
@@ -397,6 +398,7 @@ def _bases(places: Sequence[tuple[Case, int]], choice: BackboneChoice, progress:
             problem, before = structure.assembly(solver=study.modes.solver), case
         progress.stage(f"preload {study.preloads[index].name}", 0.2)
         preload = checked_preload(structure, problem, study.preloads[index])
+        structure = structure.under(preload)
         springs = structure.springs(preload.pressures)
         for joint, own in zip(structure.joints, springs, strict=True):
             if not np.any(own.k_t > 0):
@@ -446,7 +448,7 @@ class _Prepared:
 
     def laws(self, friction: Sequence[float], springs: int = SPRINGS) -> list[Microslip]:
         """The microslip law of each joint under the preload."""
-        structure, preload = self.case.structure, self.basis.preload
+        structure, preload = self.basis.structure, self.basis.preload
         if self.choice.slip != "coulomb":
             return cut_laws(structure, preload, friction, springs)
         return [

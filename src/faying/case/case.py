@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from faying.fe.mesh import Mesh
 from faying.fe.solids import bodies_of
 from faying.files import end_of
 from faying.joint.bolted import loose_parts
+from faying.joint.equilibrium import PreloadState
 from faying.joint.joint import FittedJoint, with_form
 from faying.joint.joint_law import JointLaw
 from faying.joint.modal import ModalProblem
@@ -118,6 +120,10 @@ class Case:
     def read(self) -> Read:
         """Surfaces that have been read for this case, which need not be read again for another law."""
         return read_for(self.study, self.surfaces)
+
+    def under(self, preload: PreloadState) -> Self:
+        """The case with the laws that its joints have under a preload."""
+        return replace(self, structure=self.structure.under(preload))
 
     @property
     def loads(self) -> Array:

@@ -44,12 +44,13 @@ def frequencies_of(
     """Frequencies [Hz] (loads, m) of each change and then of each of the ends, or why it has none.
 
     The basis is made for the first and the last load of all of them. Frequencies are in the order of the modes of the
-    states, each that of the mode whose shape it has: those of the ends by way of the last change.
+    states, each that of the mode whose shape it has: those of the ends by way of the last change. Where joints have
+    carried more before, a change makes of them what it makes of first loading, relative.
     """
     every = [*changes, *ends]
     if not every:
         return []
-    at = sorted({0, len(states) - 1})
+    at = sorted({0, int(np.argmax([state.load for state in states]))})
     last, structure = states[-1], case.structure
     reduction = Reduction.about(
         structure,
@@ -72,6 +73,9 @@ def frequencies_of(
         return starts
     before = _at_loads(reduction, loads_of(ChangedCase.nothing(case)), solved)
     way = [np.arange(len(one.frequencies)) for one in before]  # of each mode of the states in those of `before`
+    remembered = np.array([bool(state.preload.carried) for state in states])[:, None]
+    as_first = np.stack([one.frequencies for one in before])
+    stiffer = np.where(remembered, np.stack([state.damped.frequencies for state in states]) / as_first, 1.0)
     out: list[Array | NotConverged] = []
     for number, (loads, start) in enumerate(zip(variants, starts, strict=True)):
         try:
@@ -86,7 +90,7 @@ def frequencies_of(
             follow(old.shapes, new.shapes, mass, old.frequencies)[first]
             for old, new, first in zip(before, found, way, strict=True)
         ]
-        out.append(np.stack([one.frequencies[k] for one, k in zip(found, order, strict=True)]))
+        out.append(stiffer * np.stack([one.frequencies[k] for one, k in zip(found, order, strict=True)]))
         if number == len(changes) - 1:
             before, way = found, order
     return out

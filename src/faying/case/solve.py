@@ -79,6 +79,8 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     if structure.bolts:
         progress.begin(f"preload {preload_case.name}")
     preload = engine.preload(number)
+    case = case.under(preload)
+    structure = case.structure
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {preload_case.name}")
     found = engine.vibrate(springs)

@@ -138,7 +138,7 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
             raise InputError("--preload all takes every preload of the study; leave out the others")
         loads = list(range(len(plan.loads)))
     elif preloads:
-        loads = [preload_index(plan.loads, value, name="--preload") for value in preloads]
+        loads = [preload_index(plan.loads, value, names=plan.load_names, name="--preload") for value in preloads]
     else:
         loads = [len(plan.loads) - 1]
     return chosen(plan, friction, given), loads

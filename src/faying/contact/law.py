@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from faying.contact.inputs import FractalSurface, RoughSurface
 from faying.contact.law_figure import law_plot
 from faying.contact.measured_range import MeasuredRange
+from faying.contact.memory import Memory
 from faying.contact.parameter import FILE, Parameter, checked, checked_all
 from faying.contact.response import Response
 from faying.errors import FayingError, InputError, NotConverged, shown
@@ -171,6 +172,11 @@ class ContactLaw(Summary, ABC):
         return ()
 
     @property
+    def memory(self) -> Memory | None:
+        """What contact that has carried more before is, over first loading; None where the law says nothing of it."""
+        return None
+
+    @property
     def branch(self) -> str:
         """The branch of k_n where no k_load is stated; with k_load, k_n is that of unloading."""
         return "loading and unloading"
@@ -198,11 +204,15 @@ class ContactLaw(Summary, ABC):
     def _assumed(self) -> tuple[str, ...]:
         return self.assumptions
 
-    def plot(self, pressure: ArrayLike | None = None, *, axes: Any = None) -> "list[matplotlib.axes.Axes]":
+    def plot(
+        self, pressure: ArrayLike | None = None, *, after: float | str | None = None, axes: Any = None
+    ) -> "list[matplotlib.axes.Axes]":
         """Draw stiffness, and real area where the law has one, against pressure; dotted where the law is not valid.
 
         Args:
             pressure: nominal, numbers in Pa or text with a unit; 0.1 to 50 MPa where None, as far as the law covers.
+            after: greatest pressure that the faces have carried before, as of `at_pressure`: what they do below it is
+                drawn beside first loading.
             axes: matplotlib axes to draw into, one for a law without an area, else two; a new figure where None.
 
         Returns:
@@ -211,7 +221,7 @@ class ContactLaw(Summary, ABC):
         Raises:
             InputError: for pressures outside what the law covers, and for another number of axes.
         """
-        return law_plot(self, pressure, axes)
+        return law_plot(self, pressure, axes, after)
 
     def _pressure_at(self, closure: Array) -> Array:
         """Pressure alone; a model overrides this where it is quicker than the whole response."""
@@ -252,12 +262,39 @@ class ContactLaw(Summary, ABC):
         """The least pressure above 0 that the law resolves [Pa]."""
         return float(np.exp(self._grid[1][0]))
 
-    def at_pressure(self, pressure: ArrayLike) -> Response:
-        """Return the response at nominal pressures, any shape: numbers in Pa, or text such as "5 MPa".
+    def at_pressure(self, pressure: ArrayLike, *, after: ArrayLike | None = None) -> Response:
+        """Return the response at nominal pressures.
 
-        At zero pressure nothing touches: every quantity is 0. Raises InputError for NaN or negative pressures and for
-        those above `greatest_pressure` or below the least that the law resolves.
+        At zero pressure nothing touches: every quantity is 0.
+
+        Args:
+            pressure: any shape, numbers in Pa, or text such as "5 MPa"; 0 to `greatest_pressure`.
+            after: the greatest pressure that the faces have carried before, in place, such as "40 MPa"; any shape that
+                fits. Below it they unload and load again along one elastic curve. First loading where None.
+
+        Raises:
+            InputError: for NaN or negative pressures and for those above `greatest_pressure` or below the least that
+                the law resolves; for `after` where the law says nothing of unloading.
         """
+        response = self._first(pressure)
+        if after is None:
+            return response
+        most = checked(after, name="after", unit="Pa", zero=True)
+        require(self.name, most.max() <= self.greatest_pressure, f"after = {most.max():.4g} Pa is beyond its end")
+        found: dict[str, Any] = dict(self.remembered().after(response, np.broadcast_to(most, response.pressure.shape)))
+        return replace(response, **found)
+
+    def remembered(self) -> Memory:
+        """`memory`. Raises InputError where the law says nothing of unloading."""
+        if self.memory is None:
+            raise InputError(
+                f"{self.name} says nothing of contact that has carried more before; half-space on a scan does, and "
+                "GW-KE and GW-JG by the unloading of their summits"
+            )
+        return self.memory
+
+    def _first(self, pressure: ArrayLike) -> Response:
+        """Response on first loading."""
         p = checked(pressure, name="pressure", unit="Pa", zero=True)
         if p.size and p.max() > self.greatest_pressure * (1 + 1e-12):
             raise InputError(

@@ -39,7 +39,7 @@ class DrawnLaw(Protocol):
     def greatest_pressure(self) -> float:
         """The pressure at which the law ends [Pa]."""
 
-    def at_pressure(self, pressure: ArrayLike) -> Response:
+    def at_pressure(self, pressure: ArrayLike, *, after: ArrayLike | None = None) -> Response:
         """Return the response at pressures [Pa]."""
 
 
@@ -61,7 +61,7 @@ def name_axes(ax: Any, quantity: str) -> None:
 
 
 @drawing
-def law_plot(law: DrawnLaw, pressure: ArrayLike | None, axes: Any) -> "list[Axes]":
+def law_plot(law: DrawnLaw, pressure: ArrayLike | None, axes: Any, after: float | str | None = None) -> "list[Axes]":
     """Draw the stiffness of a law, by branch, and its real area; see `ContactLaw.plot`."""
     p = _pressures(law, pressure)
     response = law.at_pressure(p)
@@ -80,6 +80,12 @@ def law_plot(law: DrawnLaw, pressure: ArrayLike | None, axes: Any) -> "list[Axes
         draw_curve(
             stiff, p, response.k_t * scale, response.valid, color=colour(2), label=typeset("k_t, tangential"), width=1.2
         )
+    back = None if after is None else law.at_pressure(p, after=after)
+    if back is not None and after is not None:
+        most = checked(after, name="after", unit="Pa", zero=False)
+        way = np.where(p < most, 1.0, np.nan)
+        label = typeset(f"k_n after {plain(show(float(most), 'Pa'))}")
+        stiff.plot(p * 1e-6, way * back.k_n * scale, "-.", color=colour(3), lw=1.6, label=label)
     name_axes(stiff, "k_n")
     stiff.set_ylabel("stiffness per area [MPa/µm]")
     outside = "" if response.valid.all() else "; dotted: outside its range"
@@ -89,6 +95,8 @@ def law_plot(law: DrawnLaw, pressure: ArrayLike | None, axes: Any) -> "list[Axes
     )
     if response.area is not None:
         draw_curve(drawn[1], p, response.area, response.valid, color=colour(1))
+        if back is not None:
+            drawn[1].plot(p * 1e-6, way * back.area, "-.", color=colour(3), lw=1.6)
         name_axes(drawn[1], "area")
     return drawn
 

@@ -35,6 +35,7 @@ class Assembled:
         structure = build(study)
         assembly = structure.assembly(solver=study.modes.solver)
         found = checked_preload(structure, assembly, study.preloads[0])
+        structure = structure.under(found)
         stiffness, _ = structure.coupled(structure.springs(found.pressures))
         numbers = structure.mesh.numbers
         dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])

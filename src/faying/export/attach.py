@@ -285,7 +285,12 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     if preload is None and len(loads) > 1:
         known = ", ".join(one.name for one in study.preloads)
         raise InputError(f"the study has the preloads {known}; say which by preload (--preload)")
-    number = preload_index(loads, preload)
+    number = preload_index(loads, preload, names=study.load_names)
+    if study.preloads[number].after:
+        raise InputError(
+            f"{study.load_names[number]}: springs at nodes are those of first loading, and this joint has carried more "
+            "before; faying condense takes it"
+        )
     structure = structure_of(study, mesh, surfaces_of(study))
     solved_preload = checked_preload(
         structure,
@@ -294,7 +299,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
     )
     place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
     return (
-        structure.joints[place].law,
+        structure.under(solved_preload).joints[place].law,
         solved_preload.pressures[place],
         f"of the study's bolts at {units.show(loads[number], 'N')}",
     )

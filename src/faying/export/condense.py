@@ -198,14 +198,15 @@ def condense(
         NotConverged: An iteration stops short.
     """
     study = Study.read_bolted(study)
-    number, index = _joint(study, joint), preload_index(study.loads, preload)
+    number, index = _joint(study, joint), preload_index(study.loads, preload, names=study.load_names)
     progress = Progress(STAGES + index, report)
     case = Case.of(study, progress)
     structure = case.structure
     problem = structure.assembly(solver=study.modes.solver)
     for k in range(index + 1):
         progress.begin(f"preload {study.preloads[k].name}")
-        state = checked_preload(case.structure, problem, case.study.preloads[k])
+        state = checked_preload(structure, problem, case.study.preloads[k])
+    structure = structure.under(state)
     springs = structure.springs(state.pressures)
     progress.begin("modes")
     modes, *_ = modes_of(case.modal, springs)

@@ -44,7 +44,7 @@ def write(result: Result, folder: Path) -> list[Path]:
     nodes = _spread(result.outline, nearest)
     positions = {k + 1: tuple(float(v) for v in result.outline[node]) for k, node in enumerate(nodes)}
     positions |= {k: p for p, k in labels.items()}
-    title = f"{result.title}, {load_text(result.loads[-1])}"
+    title = f"{result.title}, {result.load_names[-1]}"
     modes = _modes(result.frequencies[-1], _losses(result), result.shapes[-1][:, nodes].astype(float), positions)
     made = [write_uff(folder / "modes.uff", modes, title=title)]
     if response is not None:

@@ -131,6 +131,11 @@ class ContactMaps(Summary):
         return np.asarray(self.plane + self.displacement - self.heights)
 
     @property
+    def flattened(self) -> Array:
+        """Heights [m] that are left when the load is taken off: less what points at hardness were pressed in."""
+        return self.heights - np.where(self.at_hardness, np.maximum(-self.gap, 0.0), 0.0)
+
+    @property
     def mean_gap(self) -> float:
         """Mean distance between the surfaces [m]."""
         return float(np.maximum(self.gap, 0).mean())

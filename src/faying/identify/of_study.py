@@ -121,7 +121,7 @@ def identify(
         Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294; Ching and Chen 2007,
         doi:10.1061/(ASCE)0733-9399(2007)133:7(816), for the sampling.
     """
-    study = Study.read_bolted(study)
+    study = Study.read_bolted(study, first_loading=True)
     check(study, 8, seed)
     if isinstance(count, bool) or not isinstance(count, int) or count < 100:
         raise InputError(f"count = {count!r} should be a whole number of 100 or more")
@@ -145,7 +145,7 @@ def identify(
 def left_out(study: Study, wanted: str | float | Sequence[str | float] | None) -> tuple[int, ...]:
     """Indices of preloads that are left out. Raises InputError for one that the study has not, and for all of them."""
     given = [] if wanted is None else [wanted] if isinstance(wanted, str | float | int) else list(wanted)
-    out = {preload_index(study.loads, one, name="leave_out") for one in given}
+    out = {preload_index(study.loads, one, names=study.load_names, name="leave_out") for one in given}
     if len(out) == len(study.loads):
         raise InputError("leave_out names every preload of the study; keep one or more to identify from")
     return tuple(sorted(out))

@@ -67,7 +67,7 @@ def predict(
     Source:
         Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
     """
-    study = Study.read_bolted(study)
+    study = Study.read_bolted(study, first_loading=True)
     check(study, samples, seed)
     (report or silent)("mesh", 0, 0)
     study = replace(study, uncertain=with_assumed(study))

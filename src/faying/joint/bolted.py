@@ -19,9 +19,11 @@ from faying.fe.outline import Outline, outline
 from faying.fe.quality import quality
 from faying.joint.assembled_parts import AssembledParts, added
 from faying.joint.attachments import PointMass, Support
+from faying.joint.equilibrium import PreloadState
 from faying.joint.figure import Fastening, structure_axes
 from faying.joint.joint import FittedJoint, Joint, each_pair_once, known_face
 from faying.joint.joint_law import JointLaw
+from faying.joint.loaded_before import loaded_before
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.materials import STIFFEST, Material, material_of
@@ -291,6 +293,25 @@ class BoltedStructure(Summary):
                 interface=joint.interface if gaps is None else replace(joint.interface, gap=gaps[k]),
             )
         return replace(self, joints=tuple(joints))
+
+    def under(self, preload: PreloadState) -> Self:
+        """Return the structure with the laws that its joints have under a preload: those of what was carried before."""
+        return self.loaded_before(preload.carried)
+
+    def loaded_before(self, carried: Sequence[Array]) -> Self:
+        """Return the structure whose joints have carried greatest pressures [Pa] (q,) before; () for first loading."""
+        laws = [joint.law.first_loading for joint in self.joints]
+        if carried:
+            per_node = [joint.name for joint in self.joints if joint.per_node]
+            if per_node:
+                raise InputError(
+                    f"joint {per_node[0]!r} has springs per node, which remember no pressure: leave springs out of it, "
+                    "or give preloads that rise"
+                )
+            laws = [loaded_before(law, most) for law, most in zip(laws, carried, strict=True)]
+        elif all(law is joint.law for law, joint in zip(laws, self.joints, strict=True)):
+            return self
+        return self.with_joints(laws=laws)
 
     @checked_call
     def alone(self, part: str) -> Self:

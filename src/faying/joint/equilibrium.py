@@ -8,7 +8,7 @@ matrices (`preload`) or in a small basis (`reduce`).
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -37,7 +37,8 @@ class PreloadState:
 
     pressures [Pa], openings [m] and share of the slipping area [-], one per joint; displacement (unknowns,) [m];
     imbalance, the residual force over the load [-]; Newton steps, conjugate-gradient steps, factorisations taken;
-    bolt_forces [N], those left when all bolts are tight.
+    bolt_forces [N], those left when all bolts are tight; carried, the greatest pressures [Pa] at the points of each
+    joint under the preloads before, () on first loading.
     """
 
     pressures: tuple[Array, ...]
@@ -49,6 +50,7 @@ class PreloadState:
     inner_steps: int
     factorisations: int
     bolt_forces: tuple[float, ...] = ()
+    carried: tuple[Array, ...] = ()
 
 
 @dataclass
@@ -107,6 +109,12 @@ class Equilibrium(ABC):
         self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None  # joints where last asked
         self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
+        self.first_loadings: dict[Hashable, PreloadState] = {}  # found before, by their preload
+
+    def with_laws(self, laws: Sequence[JointLaw]) -> None:
+        """Go on with other laws of the joints."""
+        self.joints = [(interface, law) for (interface, _), law in zip(self.joints, laws, strict=True)]
+        self._known = None
 
     @abstractmethod
     def _start(self, load: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from faying.contact.law import ContactLaw
 from faying.contact.response import Response
 from faying.errors import InputError
-from faying.joint.pressure_curve import PressureCurve, fade
+from faying.joint.pressure_curve import PressureCurve, UnloadingCurve, fade
 from faying.joint.springs import Motion, Springs
 from faying.typing import Array
 
@@ -191,6 +191,11 @@ class JointLaw:
         """Whether the law tells loading from unloading, so that something of its approach lasts."""
         return "k_load" in self.table.quantities
 
+    @property
+    def first_loading(self) -> "JointLaw":
+        """The law of a joint that has carried nothing before."""
+        return self
+
     def check(self) -> None:
         """Raise InputError where a joint cannot use the law: it has no stiffness."""
         self._curve  # noqa: B018  # names its own faults
@@ -206,7 +211,7 @@ class JointLaw:
         return self.table.curve(self.scale * self.table.loading, "stiffness on loading")
 
     @cached_property
-    def elastic(self) -> PressureCurve:
+    def elastic(self) -> PressureCurve | UnloadingCurve:
         """Pressure over approach by k_n alone: how a joint that was loaded before springs back and closes again.
 
         It is the curve of `pressure` unless the law has a k_load of its own.
@@ -282,7 +287,8 @@ class JointLaw:
             return None
         p, k = self.table.pressures, self.scale * self.table.stiffness[0]
         closing = np.exp(self._curve.log_w)
-        bounds = closing - np.exp(self.elastic.log_w), closing - p / k
+        back = self.table.curve(k, "normal stiffness")
+        bounds = closing - np.exp(back.log_w), closing - p / k
         within = self.table.within(pressure)
         least, greatest = (
             np.where(pressure > 0, self.table.between(within, np.maximum(bound, 0.0)), 0.0) for bound in bounds

@@ -15,7 +15,7 @@ from faying.joint.direct import Direct
 from faying.joint.equilibrium import PreloadState
 from faying.joint.figure import mode_axes, pressure_axes
 from faying.joint.modal import MAX_MODES, SOLVERS, Engine, ModalProblem, ModesChoice, Vibration
-from faying.joint.preload_case import PreloadCase
+from faying.joint.preload_case import PreloadCase, with_history
 from faying.joint.shared_modes import Reanalysis
 from faying.joint.springs import Springs
 from faying.joint.strength import bolt_notes, material_notes, pressure_notes
@@ -225,20 +225,26 @@ class State(Summary):
 
 def solve_structure(
     structure: BoltedStructure,
-    preload: float | str | Mapping[str, float | str] | None,
+    preloads: Sequence[float | str | Mapping[str, float | str] | None],
     *,
     modes: int,
     damping: Literal["hysteretic", "viscous"],
     order: Sequence[str] | None,
     solver: str | None,
     engine: str,
-) -> State:
-    """Solve a structure under one preload; see `Structure.solve`."""
+) -> tuple[State, ...]:
+    """Solve a structure under preloads, one after another; see `Structure.solve`."""
     choice = ModesChoice(count=_count(modes), damping=damping, solver=_solver(solver))
-    case = preload_case(structure, preload, order)
-    problem = ModalProblem(structure=structure, choice=choice)
-    solving = engine_for(engine, problem, [case])
-    found = solving.preload(0)
+    structure = structure.loaded_before(())
+    cases = with_history([preload_case(structure, one, order) for one in preloads])
+    solving = engine_for(engine, ModalProblem(structure=structure, choice=choice), cases)
+    return tuple(_state(structure, case, solving, number) for number, case in enumerate(cases))
+
+
+def _state(structure: BoltedStructure, case: PreloadCase, solving: Engine, number: int) -> State:
+    """A structure under one of the preloads of an engine."""
+    found = solving.preload(number)
+    structure = structure.under(found)
     springs = structure.springs(found.pressures)
     vibration = solving.vibrate(springs)
     notes = [
@@ -317,6 +323,12 @@ def law_notes(structure: BoltedStructure, preload: PreloadState, load: float) ->
         for name in open_joints(structure, preload.pressures)
     ]
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
+        if preload.carried and joint.law.model.memory is None:
+            text = (
+                f"{joint.name}, {kilo}: {joint.law.model.name} says nothing of unloading, so that the joint is as on "
+                "first loading; the half-space law of a scan knows what it has carried"
+            )
+            out.append(Note(code="no-memory", joint=joint.name, load=load, text=text))
         for reason, share in joint.law.outside_validity(pressure, joint.interface.weights).items():
             where = f"outside its validity range for {percent(share)} of the joint's stiffness"
             text = f"{joint.name}, {kilo}: {joint.law.model.name} is {where}: {reason}"

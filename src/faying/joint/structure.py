@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, overload
 
 from faying.joint.bolted import BoltedStructure
 from faying.joint.state import State, solve_structure
 from faying.misuse import checked_call
+
+Forces = float | str | Mapping[str, float | str] | None  # of the bolts: one for all, or bolt -> force
 
 
 @checked_call
@@ -32,22 +34,47 @@ class Structure(BoltedStructure):
             joint; a face does not exist; two joints, bolts or dowels share a name.
     """
 
-    @checked_call
+    @overload
     def solve(
         self,
-        preload: float | str | Mapping[str, float | str] | None = None,
+        preload: Forces = None,
         *,
         modes: int = 10,
         damping: Literal["hysteretic", "viscous"] = "hysteretic",
         order: Sequence[str] | None = None,
         solver: str | None = None,
         engine: Literal["reanalysis", "direct"] = "reanalysis",
-    ) -> State:
+    ) -> State: ...
+
+    @overload
+    def solve(
+        self,
+        preload: list[str] | list[float] | list[Mapping[str, float | str]],
+        *,
+        modes: int = 10,
+        damping: Literal["hysteretic", "viscous"] = "hysteretic",
+        order: Sequence[str] | None = None,
+        solver: str | None = None,
+        engine: Literal["reanalysis", "direct"] = "reanalysis",
+    ) -> tuple[State, ...]: ...
+
+    @checked_call
+    def solve(
+        self,
+        preload: Forces | list[str] | list[float] | list[Mapping[str, float | str]] = None,
+        *,
+        modes: int = 10,
+        damping: Literal["hysteretic", "viscous"] = "hysteretic",
+        order: Sequence[str] | None = None,
+        solver: str | None = None,
+        engine: Literal["reanalysis", "direct"] = "reanalysis",
+    ) -> State | tuple[State, ...]:
         """Tighten the bolts and find the modes, as a study does.
 
         Args:
             preload: Force of each bolt [N], or text with a unit such as "8 kN"; bolt -> force where they differ; None
-                for a structure without bolts.
+                for a structure without bolts. A list of them is gone through in its order, in place: ["4 kN", "12 kN",
+                "4 kN"]. Where a force falls, each point unloads from the greatest pressure that it has carried.
             modes: How many elastic modes, 1 to 10,000.
             damping: Kind of loss of the joints.
             order: Names of the bolts in the order of tightening, any of them more than once; None pulls all at once.
@@ -56,10 +83,20 @@ class Structure(BoltedStructure):
                 for the modes, to check the other by.
 
         Returns:
-            The state: pressures, springs of the joints, modes.
+            The state: pressures, springs of the joints, modes; of a list of preloads one for each.
 
         Raises:
             InputError: A preload is missing or not positive, or a part is free to move.
             NotConverged: An iteration stops short.
         """
-        return solve_structure(self, preload, modes=modes, damping=damping, order=order, solver=solver, engine=engine)
+        several = isinstance(preload, list)
+        states = solve_structure(
+            self,
+            preload if isinstance(preload, list) else [preload],
+            modes=modes,
+            damping=damping,
+            order=order,
+            solver=solver,
+            engine=engine,
+        )
+        return states if several else states[0]

@@ -1,6 +1,7 @@
 """Whether every part of a structure is fixed: by contact after the preload, and against every motion in its modes."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,11 +21,27 @@ NOTHING = 1e-6  # of the greatest pressure
 
 
 def checked_preload(structure: BoltedStructure, assembly: Equilibrium, case: PreloadCase) -> PreloadState:
-    """`tighten` for one preload, and check that no part is left free to move.
+    """`tighten` for one preload, after those that it names, and check that no part is left free to move.
 
     Raises InputError where a part is not, also in place of the NotConverged that this leads to, and what `tighten`
     raises.
     """
+    if case.after:
+        before = [checked_preload(structure, assembly, one) for one in case.before]
+        carried = tuple(np.max(several, axis=0) for several in zip(*(one.pressures for one in before), strict=True))
+        assembly.with_laws([joint.law for joint in structure.loaded_before(carried).joints])
+        try:
+            return replace(_first_loading(structure, assembly, case), carried=carried)
+        finally:
+            assembly.with_laws([joint.law for joint in structure.joints])
+    key = case.forces, case.order
+    if key not in assembly.first_loadings:
+        assembly.first_loadings[key] = _first_loading(structure, assembly, case)
+    return assembly.first_loadings[key]
+
+
+def _first_loading(structure: BoltedStructure, assembly: Equilibrium, case: PreloadCase) -> PreloadState:
+    """One preload with the laws that the problem has at the time."""
     try:
         found = tighten(structure, assembly, case.forces, order=case.order)
     except NotConverged:

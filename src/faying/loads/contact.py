@@ -154,7 +154,7 @@ class LoadedContact:
 
     def opened(self, motion: Array) -> Mask:
         """Points (q,) that are closed under the preload and open now."""
-        return np.asarray((self.pressure > 0) & (self.closing(motion) <= 0))
+        return np.asarray((self.pressure > 0) & (self.normal(motion)[0] <= 0))
 
     def sliding(self, motion: Array, traction: Array) -> Mask:
         """Points (q,) that touch and all of whose sliders have reached their limits."""

@@ -59,7 +59,7 @@ def load_cases(
         return answers(of_state(what, modes), tuple(loads), progress)
     plan = Study.read_bolted(what)
     found = plan.load_cases if loads is None else tuple(loads)
-    number = preload_index(plan.loads, preload)
+    number = preload_index(plan.loads, preload, names=plan.load_names)
     if not found:
         raise InputError("the study has no load case; add [[load]], or give loads=[Load(...)]")
     in_order(found)  # names its faults before anything is solved

@@ -74,7 +74,7 @@ def preloaded(study: Study, number: int, progress: Progress, *, modes: bool) -> 
     engine = engine_of("reanalysis", case)
     progress.begin(f"preload {study.preloads[number].name}")
     state = engine.preload(number)
-    springs = case.structure.springs(state.pressures)
+    springs = case.structure.under(state).springs(state.pressures)
     return preloaded_case(case, state, springs, engine, modes=modes)
 
 
@@ -82,7 +82,7 @@ def preloaded_case(
     case: Case, state: PreloadState, springs: Sequence[Springs[Any]], engine: Engine, *, modes: bool
 ) -> Preloaded:
     """A case whose preload is known, ready for load cases."""
-    study, structure = case.study, case.structure
+    study, structure = case.study, case.structure.under(state)
 
     def found(under: Sequence[Springs[Any]]) -> tuple[Array, Any]:
         vibration = engine.vibrate(under)
@@ -110,10 +110,11 @@ def at_preload(
     base: Preloaded, study: Study, wanted: PreloadCase, structure: BoltedStructure | None = None
 ) -> Preloaded:
     """The same under another preload; structure: with other friction, say."""
-    made = base.structure if structure is None else structure
+    made = (base.structure if structure is None else structure).loaded_before(())
     problem = made.assembly(solver=study.modes.solver)
     problem.adopt_factor(base.factor, 0.0)
     preload = checked_preload(made, problem, wanted)
+    made = made.under(preload)
     springs = made.springs(preload.pressures)
     return replace(base, structure=made, preload=preload, springs=springs, rest=None, notes=())
 

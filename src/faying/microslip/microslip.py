@@ -14,7 +14,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.joint.joint_law import JointLaw
-from faying.joint.pressure_curve import PressureCurve
+from faying.joint.pressure_curve import PressureCurve, UnloadingCurve
 from faying.microslip.hysteresis import Cycle, advance, steady
 from faying.microslip.sliders import Sliders, SliderState
 from faying.typing import Array
@@ -76,18 +76,20 @@ class Microslip:
         approach = np.asarray(approach, dtype=float)
         p, k_n, k_t = _present(law, approach)
         curve = law.elastic
-        here = curve.approach(p)
+        parted = np.broadcast_to(curve.parted, p.shape)
+        here = curve.approach(p) - parted
         top = float(here.max())
         above = max(1, springs // ABOVE)
         shut = p > 0
         offset = np.empty((len(p), springs + above))  # onset less present approach
         rise = np.empty_like(offset)
         end = max(curve.end, top)  # beyond the law's end no spring is added
-        nodes = np.minimum(_nodes(here[shut], p[shut] / k_n[shut], top, springs, above), end)
-        offset[shut], rise[shut] = _springs(curve, nodes, springs, p[shut], k_n[shut])
+        nodes = parted[shut, None] + np.minimum(_nodes(here[shut], p[shut] / k_n[shut], top, springs, above), end)
+        offset[shut], rise[shut] = _springs(curve.at(shut), nodes, springs, p[shut], k_n[shut])
         loose = np.concatenate([[0.0], np.geomspace(1e-3 * top, min(2 * top, end), springs + above)])
-        offset[~shut], rise[~shut] = _springs(curve, loose[None], 0, np.zeros(1), np.zeros(1))
-        onset = offset + np.where(shut, approach, 0.0)[:, None]
+        opened = curve.at(~shut)
+        offset[~shut], rise[~shut] = _springs(opened, opened.parted[:, None] + loose, 0, np.zeros(1), np.zeros(1))
+        onset = offset + np.where(shut, approach, parted)[:, None]
         return cls(onset=onset, k_n=rise, k_t=rise * (k_t / k_n)[:, None], friction=friction, gap=_gap(gap, p))
 
     @classmethod
@@ -188,7 +190,9 @@ def _nodes(here: Array, depth: Array, top: float, below: int, above: int) -> Arr
     return np.concatenate([here[:, None] - down, here[:, None], here[:, None] + up], axis=1)
 
 
-def _springs(curve: PressureCurve, nodes: Array, here: int, p: Array, k_n: Array) -> tuple[Array, Array]:
+def _springs(
+    curve: PressureCurve | UnloadingCurve, nodes: Array, here: int, p: Array, k_n: Array
+) -> tuple[Array, Array]:
     """Onset less present approach [m] and stiffness [Pa/m] (q, cells) of one spring a cell.
 
     Both are scaled, by 1 but for the interpolation of the curve and where its k falls, so that the springs shut at

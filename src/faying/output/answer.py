@@ -27,7 +27,7 @@ def answer(result: Result) -> Rows:
     if interval is None:
         return []
     several, damped = len(result.loads) > 1, None if damping_line(result) else result.at_levels
-    heads = ["mode", "moves most", f"{load_text(result.loads[-1])} [Hz]", "5 to 95 %", "as modelled"]
+    heads = ["mode", "moves most", f"{result.load_names[-1]} [Hz]", "5 to 95 %", "as modelled"]
     if any(note.code == INCOMPLETE for note in result.notes):
         heads[3] += ", incomplete"
     heads += ["Hz/kN"] * several
@@ -69,7 +69,7 @@ def damping_line(result: Result) -> str:
 def lead(result: Result) -> str:
     """The answer in two or three sentences: the modes at the greatest preload, how the test lies, what limits it."""
     interval = result.interval
-    where = f"At {load_text(result.loads[-1])}" if result.bolts else "Without bolts,"
+    where = f"At {result.load_names[-1]}" if result.bolts else "Without bolts,"
     f = result.frequencies[-1] if interval is None else interval.best[-1]
     if len(f) == 1:
         words = [f"{where} the structure has one elastic mode of interest, at {_hertz(f[0])} Hz."]

@@ -9,7 +9,7 @@ from faying.output.scene.text import packed_backbones, packed_curves
 from faying.result import Result
 from faying.result.backbone import ROUNDING, Backbone, label
 from faying.result.response_figure import words
-from faying.units import in_mm, load_text
+from faying.units import in_mm
 
 MAX_PAIRS = 12  # of output and input
 POINTS = 200  # of a backbone
@@ -20,7 +20,7 @@ def response_curves(result: Result) -> list[dict[str, Any]]:
     """Accelerance of the first pairs of output and input at every preload, for curves in a page."""
     found = result.response
     assert found is not None
-    loads = [load_text(load) for load in result.loads]
+    loads = list(result.load_names)
     accelerance = -((2 * np.pi * found.frequencies) ** 2)[None, :, None, None] * found.values
     return [
         packed_curves(

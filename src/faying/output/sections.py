@@ -70,7 +70,7 @@ def _shown(result: Result, chapter: str) -> list[ReportSection]:
 
 
 def _last(result: Result) -> str:
-    return f"at {load_text(result.loads[-1])}"
+    return f"at {result.load_names[-1]}"
 
 
 def _answer(result: Result) -> tuple[ReportSection, ...]:

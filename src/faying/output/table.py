@@ -15,7 +15,7 @@ from faying.result.difference import of_joint
 from faying.result.run_record import DampedLevels, preload_slope
 from faying.text import in_columns, or_dash
 from faying.typing import Array
-from faying.units import load_text, show
+from faying.units import show
 
 Rows = list[list[str]]
 FRACTAL = ["D", "95 % interval", "G", "95 % interval", "band", "implied Rq"]  # heads of `fractal`
@@ -33,7 +33,7 @@ def by_mode(heads: Iterable[str], cells: Iterable[Iterable[str]]) -> Rows:
 def modes(result: Result) -> Rows:
     """One row per mode: free, then each preload with its loss factor where one is predicted, then bonded."""
     lost = bool(np.isfinite(result.loss_factors).any())
-    heads = [f"{load_text(load)} [Hz]{' (loss)' * lost}" for load in result.loads]
+    heads = [f"{load} [Hz]{' (loss)' * lost}" for load in result.load_names]
     bounded = result.free is not None and result.bonded is not None
     rows: Rows = [["mode", *["free [Hz]"] * bounded, *heads, *["bonded [Hz]"] * bounded]]
     for j in range(result.frequencies.shape[1]):
@@ -54,7 +54,7 @@ def ranges(result: Result) -> Rows:
     """
     if result.low is None or result.high is None:
         return []
-    heads = [f"{load_text(load)} [Hz]" for load in result.loads]
+    heads = [f"{load} [Hz]" for load in result.load_names]
     ends = zip(result.low.T, result.high.T, strict=True)
     return by_mode(heads, ([f"{_five(a)} .. {_five(b)}" for a, b in zip(*pair, strict=True)] for pair in ends))
 
@@ -87,7 +87,7 @@ def above_range(result: Result) -> Rows:
     """One row per mode: constant stiffness above the end of the law, and bonded there; empty where none is above."""
     if result.above_range_frequencies is None or result.above_range_loss_factors is None:
         return []
-    rows: Rows = [["mode", *(f"{load_text(load)} constant .. bonded [Hz] (loss)" for load in result.loads)]]
+    rows: Rows = [["mode", *(f"{load} constant .. bonded [Hz] (loss)" for load in result.load_names)]]
     for j in range(result.frequencies.shape[1]):
         cells = []
         for i in range(len(result.loads)):
@@ -142,7 +142,7 @@ def waves(result: Result) -> Rows:
     """One row per mode: least, median and greatest over the draws of waves, at each load and of d f/d preload."""
     if result.wave_frequencies is None:
         return []
-    heads = [f"{load_text(load)} [Hz]" for load in result.loads]
+    heads = [f"{load} [Hz]" for load in result.load_names]
     cells = [[_over_draws(values, ".1f") for values in mode.T] for mode in np.moveaxis(result.wave_frequencies, 2, 0)]
     if result.wave_slopes is not None:
         heads.append("d f/d preload [Hz/kN]")
@@ -185,8 +185,8 @@ def comparison(result: Result) -> Rows:
     theirs = [] if c.published is None else [(c.published_name, c.published)]
     others = [] if c.alternatives is None else list(zip(result.alternatives, c.alternatives, strict=True))
     ours = [*others, ("Faying", c.predicted)]
-    for i, load in enumerate(result.loads):
-        rows.append([load_text(load), f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
+    for i, load in enumerate(result.load_names):
+        rows.append([load, f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
         for name, values in (*theirs, *ours):
             rows.append(["", f"{name} [Hz]", *(or_dash(f, ".1f") for f in values[i])])
             errors = 100 * (values[i] / c.frequencies[i] - 1)
@@ -208,11 +208,11 @@ def joints(result: Result) -> Rows:
     slips = bool(np.any(result.slipping > 0))
     heads = ["preload", "joint", "greatest p [MPa]", "mean p [MPa]", "open [%]", *["slipping [%]"] * slips]
     rows: Rows = [[*heads, "total k_n [N/m]", "total k_t [N/m]", "imbalance"]]
-    for (i, load), (k, name) in product(enumerate(result.loads), enumerate(result.joints)):
+    for (i, load), (k, name) in product(enumerate(result.load_names), enumerate(result.joints)):
         here = of_joint(result, i, k)
         rows.append(
             [
-                load_text(load),
+                load,
                 name,
                 f"{here.greatest * 1e-6:.3g}",
                 f"{here.mean * 1e-6:.3g}",
@@ -241,15 +241,15 @@ def bolts(result: Result) -> Rows:
     if not result.bolts or (not result.tightening and result.bolt_numbers is not None):
         return []
     rows: Rows = [["preload", *(f"{name} [kN]" for name in result.bolts)]]
-    for load, forces in zip(result.loads, result.bolt_forces, strict=True):
-        rows.append([load_text(load), *(f"{force / 1e3:.3f}" for force in forces)])
+    for load, forces in zip(result.load_names, result.bolt_forces, strict=True):
+        rows.append([load, *(f"{force / 1e3:.3f}" for force in forces)])
     return rows
 
 
 def of_quantity(result: Result, name: str) -> Rows:
     """A quantity of modes: one row per mode. Of bolts, joints and the like: one row per preload, a column for each."""
     meta, values = result.shown()[name], np.asarray(getattr(result, name))
-    loads = [load_text(load) for load in result.loads]
+    loads = list(result.load_names)
     if meta.dims == ("load", "mode"):
         cells = ([or_dash(v, meta.shown.form) for v in row] for row in values.T)
         return by_mode((f"{load} [{meta.unit_text}]" for load in loads), cells)
@@ -273,7 +273,7 @@ def bolting(result: Result) -> Rows:
         return ["-" if np.isnan(low) else f"{low:.2g} .. {high:.2g}" for low, high in bounds.reshape(2, -1).T]
 
     rows = in_columns(
-        ("preload", [load_text(load) if k == 0 else "" for load in result.loads for k in range(shape[1])], ""),
+        ("preload", [load if k == 0 else "" for load in result.load_names for k in range(shape[1])], ""),
         ("bolt", [*result.bolts] * shape[0], ""),
         ("force [kN]", of_all(result.bolt_forces / 1e3), ".3f"),
         ("delta_S [um/kN]", of_all(1e9 * b.compliance), ".3g"),
@@ -325,8 +325,8 @@ def conductance(result: Result) -> Rows:
     if not fields:
         return []
     rows: Rows = [["preload", *(f"{name} [{unit}]" for _, unit in fields for name in result.joints)]]
-    for i, load in enumerate(result.loads):
-        rows.append([load_text(load), *(or_dash(v, ".4g") for values, _ in fields for v in values[i])])
+    for i, load in enumerate(result.load_names):
+        rows.append([load, *(or_dash(v, ".4g") for values, _ in fields for v in values[i])])
     return rows
 
 

@@ -202,8 +202,8 @@ def compare_runs(first: Result, second: Result, preload: float | str | None = No
     notes = []
     if preload is not None:
         loads = (
-            preload_index(first.loads, preload, of="the first run"),
-            preload_index(second.loads, preload, of="the second run"),
+            preload_index(first.loads, preload, names=first.load_names, of="the first run"),
+            preload_index(second.loads, preload, names=second.load_names, of="the second run"),
         )
     else:
         shared = shared_preloads(first, second)

@@ -60,7 +60,7 @@ def face_map(ax: Any, result: RunRecord, field: str, load: int = -1, joint: int 
         areas=result.weights[here],
         label=label,
         unit=unit,
-        title=f"{plain(result.joints[joint])}, {load_text(result.loads[load])}: {percent(share)} open",
+        title=f"{plain(result.joints[joint])}, {result.load_names[load]}: {percent(share)} open",
     ).paint(ax)
 
 

@@ -8,7 +8,6 @@ from faying.errors import InputError
 from faying.result.score import Score
 from faying.style import COLOURS, WIDE, drawing, legend_above, new_figure
 from faying.typeset import typeset
-from faying.units import load_text
 
 if TYPE_CHECKING:
     from faying.result.result import Result
@@ -58,7 +57,7 @@ def intervals(result: "Result") -> Any:
     left.set_yticks(y, [f"{k + 1}: {f:.0f} Hz" for k, f in enumerate(interval.best[-1])])
     left.invert_yaxis()
     left.set_xlabel("difference from the value as modelled [%]")
-    left.set_ylabel(f"mode at {load_text(result.loads[-1])}")
+    left.set_ylabel(f"mode at {result.load_names[-1]}")
     left.grid(axis="x", alpha=0.3)
     before = np.zeros(count)
     for name, share in zip(interval.sources, 100 * interval.shares[:, -1], strict=True):

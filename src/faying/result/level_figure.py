@@ -9,7 +9,6 @@ from faying.result.figure import band, mode_panels
 from faying.result.result import Result
 from faying.result.run_record import DampedLevels
 from faying.style import COLOURS, colour, drawing, plain_numbers, shared_legend
-from faying.units import load_text
 
 
 @drawing
@@ -23,7 +22,7 @@ def damping_levels(result: Result, load: int = -1) -> Any:
     for mode, ax in enumerate(axes):
         damping_of(ax, result, mode, load)
         ax.set_title(f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", pad=3)
-    fig.supxlabel(f"peak acceleration where the mode moves most [m/s²], at {load_text(result.loads[load])}")
+    fig.supxlabel(f"peak acceleration where the mode moves most [m/s²], at {result.load_names[load]}")
     fig.supylabel("damping ratio [%]")
     shared_legend(fig, axes)
     return fig

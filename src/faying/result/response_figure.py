@@ -93,7 +93,7 @@ def mac_between_loads(ax: Any, result: Result, load: int = -1) -> Any:
     ax.set_xticks(count[::step], [str(k + 1) for k in count[::step]])
     ax.set_yticks(count[::step], [str(k + 1) for k in count[::step]])
     ax.spines[:].set_visible(False)
-    ax.set(xlabel=f"mode at {load_text(result.loads[load])}", ylabel=f"mode at {load_text(result.loads[0])}")
+    ax.set(xlabel=f"mode at {result.load_names[load]}", ylabel=f"mode at {result.load_names[0]}")
     return ax
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from faying.errors import ReadError
 from faying.files import write_text
 from faying.joint.attachments import PointMass, Support
-from faying.joint.preload_case import preload_index
+from faying.joint.preload_case import each_once, load_name, preload_index
 from faying.measured.compare import ModalComparison
 from faying.measured.model import FullResponse, ModelModes
 from faying.misuse import checked_call
@@ -119,6 +119,8 @@ class RunRecord(Recorded):
 
     title: str
     loads: Array = variable("load", "N", "preload of the first bolt", "preload")
+    carried: Array | None = optional("load", "N", "greatest preload of the first bolt before, 0 on first loading")
+    settled: bool = False
     frequencies: Array = variable("load mode", "Hz", "frequency", "modes/frequency", shown="frequency")
     loss_factors: Array = variable(
         "load mode",
@@ -351,7 +353,7 @@ class RunRecord(Recorded):
         rows = {"joints": joints, "bolts": listed(self.bolts)} if self.joints else {"parts": listed(self.parts)}
         rows |= {"dowels": listed(self.dowels)} if self.dowels else {}
         few = list(range(len(self.loads))) if len(self.loads) <= MAX_LOADS else [0, len(self.loads) // 2, -1]
-        words = load_texts(self.loads)
+        words = self.load_names
         between = self.free is not None and self.bonded is not None
         rows["frequencies"] = f"[Hz] {' | '.join(['free'] * between + [words[k] for k in few] + ['bonded'] * between)}"
         shown = self.frequencies.shape[1] if self.frequencies.shape[1] <= MAX_MODES else MAX_MODES - 1
@@ -430,7 +432,7 @@ class RunRecord(Recorded):
 
         Raises InputError where there is no such load.
         """
-        index = preload_index(self.loads, load, name="load", of=source)
+        index = preload_index(self.loads, load, names=self.load_names, name="load", of=source)
         return ModelModes(
             frequencies=self.frequencies[index],
             loss_factors=self.loss_factors[index],
@@ -472,12 +474,19 @@ class RunRecord(Recorded):
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
-        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, self.frequencies.shape[1] + 1)}
+        out: dict[str, Any] = {"load": self.load_names, "mode": np.arange(1, self.frequencies.shape[1] + 1)}
         out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         out |= {"part": self.parts} if self.parts else {}
         out |= {"dowel": self.dowels} if self.dowels else {}
         out |= {"source": self.interval_sources} if self.interval_sources else {}
         return out | ({"law": self.alternatives} if self.alternatives else {})
+
+    @property
+    def load_names(self) -> tuple[str, ...]:
+        """What tables call the loads, each once: "4 kN after 12 kN" where a preload has fallen."""
+        if self.settled or self.carried is None:
+            return load_texts(self.loads)
+        return each_once(load_name(*pair) for pair in zip(self.loads, self.carried, strict=True))
 
     @property
     def interval(self) -> Interval | None:

@@ -18,7 +18,7 @@ from faying.study.vibration import Excitation
 
 def vibrations_of(case: Case, state: LoadedCase) -> tuple[VibrationResponse, ...]:
     """The answers of a case under one preload to all that its study shakes it with."""
-    structure, study = case.structure, case.study
+    structure, study = case.structure.under(state.preload), case.study
     stiffness, loss = structure.coupled(state.springs)
     base = Shaken(
         title=study.title,

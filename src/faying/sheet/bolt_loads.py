@@ -1,7 +1,7 @@
 """What a sheet takes from load cases at each of three preloads: loads along and across each bolt, and its forces."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,7 +68,13 @@ class BoltLoad:
 
 
 def bolt_loads(
-    case: Case, state: LoadedCase, engine: Engine, forces: tuple[Array, Array], share: Array, progress: Progress
+    case: Case,
+    state: LoadedCase,
+    engine: Engine,
+    preload: PreloadCase,
+    forces: tuple[Array, Array],
+    share: Array,
+    progress: Progress,
 ) -> dict[int, BoltLoad]:
     """Return what the cases that [[bolt_sheet]] names are to each bolt, by its index; those without one are left out.
 
@@ -77,7 +83,7 @@ def bolt_loads(
     has to carry.
 
     Args:
-        case, state, engine: The study under its mean preload.
+        case, state, engine, preload: The study under its mean preload.
         forces: The least and the greatest of each bolt [N] (b,).
         share: Phi_K of each bolt [-] (b,).
         progress: Is told of each preload.
@@ -101,7 +107,7 @@ def bolt_loads(
             missing[end] = f"a {which} above 0 in every bolt"
             continue
         try:
-            ends[-1] = answers(at_preload(base, study, PreloadCase(tuple(wish.tolist()))), loads, progress)
+            ends[-1] = answers(at_preload(base, study, replace(preload, forces=tuple(wish.tolist()))), loads, progress)
         except (InputError, NotConverged) as fault:
             missing[end] = f"an equilibrium at the {which} ({fault})"
     out = {}

@@ -119,7 +119,7 @@ def bolt_sheet(
         VDI 2230 Part 1:2015, section 4, for concentric clamping and loading.
     """
     plan = Study.read(study)
-    number = preload_index(plan.loads, preload)
+    number = preload_index(plan.loads, preload, names=plan.load_names)
     stages = 7 if any(choice_for(plan, bolt.name).loads for bolt in plan.bolts) else 4
     progress = Progress(stages, report)
     case = Case.of(bare(plan), progress)
@@ -130,7 +130,7 @@ def bolt_sheet(
         raise InputError("the study has no bolt, so that there is no sheet; add [[bolt]]")
     forces = np.array(state.preload.bolt_forces)
     least, greatest = np.array([_ends(plan, k, numbers, float(force)) for k, force in enumerate(forces)]).T
-    found = bolt_loads(case, state, engine, (least, greatest), numbers.load_factor[0], progress)
+    found = bolt_loads(case, state, engine, plan.preloads[number], (least, greatest), numbers.load_factor[0], progress)
     sheets = [_sheet(case, index, numbers, float(forces[index]), found.get(index)) for index in range(len(forces))]
     return BoltSheets(title=plan.title, load=state.load, sheets=tuple(sheets))
 

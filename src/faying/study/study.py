@@ -11,7 +11,7 @@ from faying.bolt.solid_bolt import SolidBolt
 from faying.errors import InputError, ReadError
 from faying.joint.attachments import PointMass, Support
 from faying.joint.modal import ModesChoice
-from faying.joint.preload_case import PreloadCase
+from faying.joint.preload_case import PreloadCase, after_greatest, each_once, with_history
 from faying.materials import Material
 from faying.misuse import checked_call
 from faying.study.change import change_line, with_value
@@ -139,6 +139,16 @@ class Study(Summary):
         return tuple(case.preload for case in self.preloads)
 
     @property
+    def load_names(self) -> tuple[str, ...]:
+        """What messages call them, each once."""
+        return each_once(case.name for case in self.preloads)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the joints have carried the greatest preload before."""
+        return any(joint.state == "settled" for joint in self.joints)
+
+    @property
     def in_order(self) -> bool:
         """Whether the bolts are tightened one after another."""
         return any(case.order is not None for case in self.preloads)
@@ -191,11 +201,19 @@ class Study(Summary):
         return replace(study, name=file.stem)
 
     @classmethod
-    def read_bolted(cls, path: "str | Path | Study") -> "Study":
-        """As `read`, for work on joints under preload. Raises InputError also where there is none."""
+    def read_bolted(cls, path: "str | Path | Study", *, first_loading: bool = False) -> "Study":
+        """As `read`, for work on joints under preload. Raises InputError also where there is none.
+
+        first_loading: whether the work knows joints on first loading alone; raises where a joint has carried more.
+        """
         study = cls.read(path)
         if not study.joints:
             raise InputError("this needs joints that bolts press together, and the study has none; see faying run")
+        if first_loading and any(case.after for case in study.preloads):
+            raise InputError(
+                "this takes joints on first loading, and those of the study have carried more before: give preloads "
+                'that rise, and leave out state = "settled"; faying run takes both'
+            )
         return study
 
     @classmethod
@@ -213,6 +231,7 @@ class Study(Summary):
         surface = top.inner("surface", SurfaceChoice.of)
         alternatives = tuple(AlternativeChoice.of(t, i) for i, t in enumerate(top.tables("alternative")))
         backbone = top.inner("backbone", BackboneChoice.of)
+        _note_states(faults, joints)
         _note_lacking_laws(faults, joints, (law, surface), alternatives, backbone)
         bolts, forces = _bolts(top, materials, joints)
         cases, vibrations = read_loads(top.tables("load")), read_vibrations(top.tables("vibration"))
@@ -241,9 +260,7 @@ class Study(Summary):
             joints=joints,
             bonds=bonds,
             bolts=bolts,
-            preloads=tuple(
-                PreloadCase(forces=one, order=order) for one in (zip(*forces, strict=True) if forces else [()])
-            ),
+            preloads=_preloads(forces, order, joints),
             modes=modes,
             response=response,
             test=test,
@@ -296,6 +313,24 @@ def _with_selectors(geometry: GeometryChoice, faults: Faults) -> GeometryChoice:
     if both:
         faults.add(f"geometry.face.{both[0]!r} is the name that a selector elsewhere gets; choose another name")
     return replace(geometry, face={**geometry.face, **faults.selectors})
+
+
+def _note_states(faults: Faults, joints: tuple[JointChoice, ...]) -> None:
+    """Note joints of which some are settled and some are not."""
+    states = {joint.state: joint.name for joint in joints}
+    if len(states) > 1:
+        faults.add(
+            f'joint {states["settled"]!r} has state = "settled" and {states["first"]!r} has not; a structure was put '
+            "together at once: give all joints the same state"
+        )
+
+
+def _preloads(
+    forces: tuple[tuple[float, ...], ...], order: tuple[int, ...] | None, joints: tuple[JointChoice, ...]
+) -> tuple[PreloadCase, ...]:
+    """The preloads with what the joints carried before each, from the forces [N] of each bolt."""
+    cases = [PreloadCase(forces=one, order=order) for one in (zip(*forces, strict=True) if forces else [()])]
+    return (after_greatest if any(joint.state == "settled" for joint in joints) else with_history)(cases)
 
 
 def _note_lacking_laws(

@@ -79,7 +79,7 @@ def sweep(
     Raises:
         InputError: axes that do not fit the study, leftovers of another sweep.
     """
-    study = Study.read_bolted(study)
+    study = Study.read_bolted(study, first_loading=True)
     report = report or silent
     _check(study, tolerance)
     report("surface", 0, 0)

@@ -83,6 +83,11 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
     metavar="FROM:TO[:POINTS]",
     help="Nominal pressures, spaced logarithmically; or one pressure. Default: 0.1 to 50 MPa, as far as the law goes.",
 )
+@click.option(
+    "--after",
+    metavar="STRESS",
+    help='Greatest pressure that the faces have carried before, such as "40 MPa"; none where left out.',
+)
 @click.option("--scan", type=PATH, help="A scan: D, G, moments and area come from it.")
 @click.option("--xy-unit", help='Unit of x and y where the scan states none, for example "mm".')
 @click.option("--z-unit", help='Unit of the heights where the scan states none, for example "um".')
@@ -118,6 +123,7 @@ def command(
     all_models: bool,
     contact_map: str | None,
     stability: bool,
+    after: str | None,
     **options: Any,
 ) -> None:
     """Real area, stiffness and loss of a contact law against nominal pressure.
@@ -147,6 +153,8 @@ def command(
         given = given_of(kind, options, settings, mates)
         click.echo(law_table.stability(mates, labels, given, float(pressures[len(pressures) // 2]), as_json))
         return
+    if after and (stability or models or all_models):
+        raise InputError("--after is for one law: leave out --stability, --models and --all-models")
     if models or all_models:
         if mates is None or not on_scan or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
@@ -159,7 +167,7 @@ def command(
     with nullcontext() if mates is None else law_table.watched(mates) as seen:
         choice = pick(kind, given, None, pair) if seen is None else seen.choose(kind, given)
         law = choice.law
-        response = law.at_pressure(pressures if pressure is not None else reached(law, pressures))
+        response = law.at_pressure(pressures if pressure is not None else reached(law, pressures), after=after)
     h = conducted(law, response, pair) if options["conductance"] else None
     if csv_file:
         write_text(Path(csv_file), csv_text(law, response, h))
@@ -167,15 +175,20 @@ def command(
         from faying.contact.figure import curves
         from faying.style import save
 
-        save(curves({law.name: response}), plot)
+        if after:
+            save(law.plot(response.pressure, after=after)[0].get_figure(), plot)
+        else:
+            save(curves({law.name: response}), plot)
     if as_json:
         about = {"reason": choice.reason, "mates": choice.mates} | (
             {"surface": facts_of(mates)} if mates is not None and on_scan else {}
         )
         about |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
+        about |= {} if after is None else {"after": quantity(parse(after, "Pa", name="--after"), "Pa")}
         click.echo(json_text(document(law, response) | about))
         return
-    click.echo(folded("\n".join([*heading(choice, mates, kind, given), table(law, response, h)])))
+    before = [] if after is None else [f"the faces have carried {after} before, in place", ""]
+    click.echo(folded("\n".join([*heading(choice, mates, kind, given), *before, table(law, response, h)])))
 
 
 def conducted(law: ContactLaw, response: Response, pair: ContactPair) -> Array:

@@ -17,17 +17,16 @@ from faying.typing import Array
 
 @dataclass(frozen=True, kw_only=True)
 class Unloading(ABC):
-    """Unloading after loading by a model to delta_max [m]; InputError unless that is positive."""
+    """Unloading after loading by a model to delta_max [m], one number or any shape; InputError unless positive."""
 
     loading: AsperityModel
-    delta_max: float
+    delta_max: float | Array
 
     name: ClassVar[str]
     source: ClassVar[str]
 
     def __post_init__(self) -> None:
-        if not 0 < self.delta_max < np.inf:
-            raise InputError(f"{self.name}: delta_max = {self.delta_max:.6g} m; it must be positive")
+        checked(self.delta_max, name=f"{self.name}: delta_max", unit="m", zero=False)
 
     @cached_property
     def top(self) -> AsperityResponse:
@@ -36,12 +35,12 @@ class Unloading(ABC):
 
     @property
     @abstractmethod
-    def residual(self) -> float:
+    def residual(self) -> Array:
         """Interference at which contact is lost [m]."""
 
     @property
     @abstractmethod
-    def exponents(self) -> tuple[float, float]:
+    def exponents(self) -> tuple[Array, Array]:
         """Powers of force and of area in (delta - residual)/(delta_max - residual)."""
 
     def at(self, delta: ArrayLike) -> AsperityResponse:
@@ -52,11 +51,12 @@ class Unloading(ABC):
         """
         d = checked(delta, name="interference", unit="m", zero=True)
         if np.any(d > self.delta_max * (1 + 1e-12)):
-            raise InputError(f"{self.name}: interference {d.max():.6g} m is above delta_max = {self.delta_max:.6g} m")
+            most = np.max(self.delta_max)
+            raise InputError(f"{self.name}: interference {d.max():.6g} m is above delta_max = {most:.6g} m")
         span = self.delta_max - self.residual
         s = np.clip((d - self.residual) / span, 0.0, 1.0)
         n, m = self.exponents
-        F, A = float(self.top.force), float(self.top.area)
+        F, A = self.top.force, self.top.area
         force, area = F * s**n, A * s**m
         return AsperityResponse(
             force=np.asarray(force),
@@ -67,9 +67,9 @@ class Unloading(ABC):
         )
 
     @property
-    def load_index(self) -> float:
+    def load_index(self) -> Array:
         """Energy lost over the energy of loading [-]: 0 elastic, 1 all lost."""
-        return 1 - float(self.at(self.delta_max).energy) / float(self.top.energy)
+        return np.asarray(1 - self.at(self.delta_max).energy / self.top.energy)
 
 
 @final
@@ -84,18 +84,18 @@ class EtsionKligermanKadin(Unloading):
     source: ClassVar[str] = "doi:10.1016/j.ijsolstr.2004.12.006"
 
     @property
-    def _x(self) -> float:
-        return max(self.delta_max / self.loading.critical, 1.0)
+    def _x(self) -> Array:
+        return np.maximum(np.asarray(self.delta_max) / self.loading.critical, 1.0)
 
     @property
-    def residual(self) -> float:
+    def residual(self) -> Array:
         """Interference at which contact is lost [m]."""
-        return float(self.delta_max * (1 - self._x**-0.28) * (1 - self._x**-0.69))
+        return np.asarray(self.delta_max * (1 - self._x**-0.28) * (1 - self._x**-0.69))
 
     @property
-    def exponents(self) -> tuple[float, float]:
+    def exponents(self) -> tuple[Array, Array]:
         """Powers of force and of area."""
-        return float(1.5 * self._x**-0.0331), float(self._x**-0.12)
+        return 1.5 * self._x**-0.0331, self._x**-0.12
 
 
 @final
@@ -110,21 +110,21 @@ class Brake(Unloading):
     source: ClassVar[str] = "doi:10.1016/j.ijsolstr.2015.02.018"
 
     @property
-    def residual(self) -> float:
+    def residual(self) -> Array:
         """Interference at which contact is lost [m]."""
         elastic = 4 / 3 * self.loading.pair.E_star * sqrt(self.loading.R) * self.delta_max**1.5
-        return float(self.delta_max * max(0.0, 1 - float(self.top.force) / elastic))
+        return np.asarray(self.delta_max * np.maximum(0.0, 1 - self.top.force / elastic))
 
     @property
-    def radius(self) -> float:
+    def radius(self) -> Array:
         """Radius of the flattened asperity, F^2/[((4/3) E*)^2 (delta_max - residual)^3] [m]."""
         span = self.delta_max - self.residual
-        return float((float(self.top.force) / (4 / 3 * self.loading.pair.E_star)) ** 2 / span**3)
+        return np.asarray((self.top.force / (4 / 3 * self.loading.pair.E_star)) ** 2 / span**3)
 
     @property
-    def exponents(self) -> tuple[float, float]:
+    def exponents(self) -> tuple[Array, Array]:
         """Powers of force and of area."""
-        return 1.5, 1.0
+        return np.asarray(1.5), np.asarray(1.0)
 
 
 def load_index(
@@ -136,5 +136,4 @@ def load_index(
     where full plasticity begins.
     """
     d = checked(delta_max, name="delta_max", unit="m", zero=False)
-    flat = [unloading(loading=loading, delta_max=float(v)).load_index for v in d.ravel()]
-    return np.asarray(flat, float).reshape(d.shape)
+    return unloading(loading=loading, delta_max=d).load_index

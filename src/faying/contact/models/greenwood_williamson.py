@@ -1,5 +1,6 @@
 """Greenwood and Williamson 1966: summits of one radius and Gaussian heights, with any asperity law."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sqrt
@@ -8,9 +9,11 @@ from typing import ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from faying.contact.asperity.base import AsperityModel, summed_model
+from faying.contact.asperity.base import AsperityModel, AsperityResponse, summed_model
+from faying.contact.asperity.unloading import EtsionKligermanKadin
 from faying.contact.law import ContactLaw, Response
 from faying.contact.measured_range import MeasuredRange
+from faying.contact.memory import DEEPEST, Memory
 from faying.contact.parameter import TEXT, Parameter
 from faying.errors import InputError
 from faying.materials import ContactPair
@@ -19,6 +22,8 @@ from faying.typing import Array
 # what is summed: heights to this many standard deviations, with this many points on each panel
 HIGHEST, NODES = 8.5, 10
 FARTHEST, NEAREST = 6.0, -3.0
+SUMMITS_UNLOAD = ("kogutetsion", "jacksongreen")  # laws of loading on which the fits of unloading are used
+UNLOADED = 400  # separations of a curve of unloading: ln p over ln k between them to 1e-4
 
 
 @final
@@ -88,8 +93,8 @@ class GreenwoodWilliamson(ContactLaw):
         return [(x * law.critical / self.sigma, unit * law.jump(x)) for x in law.borders]
 
     @cached_property
-    def _nodes(self) -> tuple[Array, Array]:
-        """Interferences t in units of sigma, and the weighted values of force, area, k_n, energy there (n, 4).
+    def _points(self) -> tuple[Array, Array]:
+        """Interferences t in units of sigma, and their weights (n,).
 
         Panels end where the asperity's formulas change and grow threefold from there, up to half of sigma; on
         each t = a + (b-a) s^2, so that the square root at first touch is a polynomial in s.
@@ -104,9 +109,46 @@ class GreenwoodWilliamson(ContactLaw):
         s, w = (s + 1) / 2, w / 2
         low, span = cuts[:-1, None], np.diff(cuts)[:, None]
         t = (low + span * s**2).ravel()
-        weight = (span * 2 * s * w).ravel()
-        at = self._asperity.at(t * self.sigma)
-        return t, np.stack([at.force, at.area, at.stiffness, at.energy], axis=1) * weight[:, None]
+        return t, (span * 2 * s * w).ravel()
+
+    @cached_property
+    def _nodes(self) -> tuple[Array, Array]:
+        """Interferences t in units of sigma, and the weighted values of force, area, k_n, energy there (n, 4)."""
+        t, weight = self._points
+        return t, _values(self._asperity.at(t * self.sigma)) * weight[:, None]
+
+    @cached_property
+    def memory(self) -> Memory | None:
+        """Each summit unloads from the interference that it had (Etsion, Kligerman, Kadin 2005); Hertz' stays elastic.
+
+        None for other asperities.
+        """
+        name = self.asperity.lower().replace("-", "").replace("_", "")
+        if name not in ("hertz", *SUMMITS_UNLOAD):
+            return None
+        return Memory.of(self.least_pressure, self.greatest_pressure, self._ratios)
+
+    def _ratios(self, pressure: Array) -> Mapping[str, Array]:
+        """Ratios (n, n) of unloading to first loading at pressures [Pa] after each of them; see `Memory.of`."""
+        t, weight = self._points
+        way = EtsionKligermanKadin(loading=self._asperity, delta_max=t * self.sigma)
+        raised = np.concatenate([[0.0], np.geomspace(1e-4, FARTHEST, UNLOADED) * self.sigma])
+        values = _values(way.at(np.maximum(t * self.sigma - raised[:, None], 0.0)))  # (separations, summits, 4)
+        closures, n = self._closure_at(pressure), len(pressure)
+        first = self.at_closure(closures).quantities()
+        out = {name: np.full((n, n), np.nan) for name in ("area", "k_n", "energy_n")}
+        if self.asperity.lower() == "hertz":
+            return {name: np.ones((n, n)) for name in out}
+        for after, closure in enumerate(closures):
+            heights = weight * np.exp(-((t + closure / self.sigma) ** 2) / 2) / sqrt(2 * pi)
+            force, area, k_n, energy = self.density * np.einsum("s,dsq->qd", heights, values)
+            lower = slice(max(after - DEEPEST, 0), after + 1)
+            x = np.log(pressure[lower])
+            shut = (force > 0) & (k_n > 0)
+            for name, row in (("area", area), ("k_n", k_n), ("energy_n", energy)):
+                found = np.interp(x, np.log(force[shut][::-1]), np.log(row[shut][::-1]))
+                out[name][lower, after] = np.exp(found) / first[name][lower]
+        return out
 
     def at_closure(self, separation: ArrayLike) -> Response:
         """Return the response at separations d [m], any shape; InputError unless between -3 and 6 sigma."""
@@ -133,3 +175,8 @@ class GreenwoodWilliamson(ContactLaw):
             energy_n=np.asarray(energy),
             reasons=reasons,
         )
+
+
+def _values(at: AsperityResponse) -> Array:
+    """Force, area, stiffness and energy of summits, along a last axis of four."""
+    return np.stack([at.force, at.area, at.stiffness, at.energy], axis=-1)

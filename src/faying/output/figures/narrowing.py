@@ -11,7 +11,6 @@ from faying.result import Result
 from faying.result.interval_figure import SOURCES
 from faying.style import WIDE, drawing, legend_above, new_figure
 from faying.typeset import typeset
-from faying.units import load_text
 
 
 def _words(name: str, remedy: str) -> str:
@@ -50,7 +49,7 @@ def narrowing(result: Result) -> Any:
     ax.set_yticks(range(len(found)), [_words(name, remedy) for *_, name, remedy in found])
     ax.invert_yaxis()
     ax.set_xlim(left=min(0.0, 1.05 * min((float(less.min()) for _, less, *_ in found), default=0.0)))
-    ax.set_xlabel(f"interval narrower by [%], at {load_text(result.loads[-1])}")
+    ax.set_xlabel(f"interval narrower by [%], at {result.load_names[-1]}")
     ax.grid(axis="x", alpha=0.3)
     legend_above(ax)
     return fig

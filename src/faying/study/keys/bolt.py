@@ -156,8 +156,8 @@ def _forces(
     return forces or ()
 
 
-def _rising(unit: str, example: str, says: str) -> Key:
-    """One quantity that tightens a bolt, or several that rise."""
+def _tightened(unit: str, example: str, says: str) -> Key:
+    """One quantity that tightens a bolt, or several, one after another."""
 
     def read(value: Any, name: str) -> tuple[float, ...]:
         written = unit.replace("*", " ")
@@ -169,14 +169,11 @@ def _rising(unit: str, example: str, says: str) -> Key:
             if load <= 0:
                 raise InputError(f'{name} = "{item}": a preload pulls the joint together and must be positive')
             quantity(item, written, name)  # refuses what no bolt can have
-        if any(b <= a or isclose(a, b) for a, b in pairwise(loads)):
-            raise InputError(
-                f"{name} = {value!r}: preloads must rise, since the law is one of loading; the joint remembers the "
-                "greatest load it has seen"
-            )
+        if any(isclose(a, b) for a, b in pairwise(loads)):
+            raise InputError(f"{name} = {value!r}: two in a row are the same; leave one out")
         return tuple(loads)
 
-    return Key(f"quantity [{unit}], or a list that rises", one_or_more(QUANTITY), says, read=read, unit=unit)
+    return Key(f"quantity [{unit}], or a list", one_or_more(QUANTITY), says, read=read, unit=unit)
 
 
 BOLT: Declared = {
@@ -195,10 +192,15 @@ BOLT: Declared = {
     "thread_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction in the thread."),
     "head_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction under the head."),
     "preload": replace(
-        _rising("N", "12 kN", 'One force or several that rise, for example ["6 kN", "12 kN"].'),
+        _tightened(
+            "N",
+            "12 kN",
+            'One force, or several one after another: ["6 kN", "12 kN"]. They may fall, ["12 kN", "6 kN"]: then each '
+            "point of the joints unloads from the greatest pressure that it has carried.",
+        ),
         parameter=Parameter("N", "preload of the bolts", 0),
     ).varying(lambda forces, value: np.full_like(forces, value)),
-    "torque": _rising("N*m", "20 N m", "One tightening torque or several that rise, in place of preload."),
+    "torque": _tightened("N*m", "20 N m", "One tightening torque or several, in place of preload."),
     "nut_factor": Key.within(*NUT_FACTOR, "K of F = T/(K d)."),
     "grade": Key.text(
         'Property class of ISO 898-1, for example "8.8"; compares the preload with the proof load.',

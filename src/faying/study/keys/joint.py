@@ -52,6 +52,7 @@ class JointChoice:
     law: LawChoice | None = None
     form: Form | None = None
     bonded: bool = False
+    state: Literal["first", "settled"] = "first"
     number: int = 0
     stiffness: float = 1.0
 
@@ -81,7 +82,7 @@ class JointChoice:
         return cls(
             name=name,
             faces=face_names(table, name),
-            **{key: table.get(key) for key in ("springs", "tangential", "friction", "search_distance")},
+            **{key: table.get(key) for key in ("springs", "tangential", "friction", "search_distance", "state")},
             surface=table.inner("surface", SurfaceChoice.of),
             law=table.inner("law", LawChoice.of),
             form=table.inner("form", read_form),
@@ -131,6 +132,12 @@ JOINT: Declared = {
         parameter=TANGENTIAL,
     ).varying(),
     "search_distance": Key.quantity("m", "Largest distance of two faces that still make a joint."),
+    "state": Key.text(
+        'What the joint has carried before: nothing, "first"; or the greatest preload of the study, "settled", so that '
+        "it unloads and loads again along one elastic curve. The same for all joints.",
+        "first",
+        ("first", "settled"),
+    ),
     "form": Inner(says="Form of the two faces together, as a gap. What is given adds up.", keys=FORM),
 }
 

@@ -1,0 +1,110 @@
+"""Studies whose preloads fall, and joints that carried the greatest preload before."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import faying
+from faying.cli.run import command
+from faying.study import Study
+from tests.helpers.studies import write
+
+KE = """[law]
+model = "gw"
+asperity = "KogutEtsion"
+density = "2e10 1/m^2"
+radius = "20 um"
+sigma = "0.5 um"
+"""
+BACK = ["4 kN", "9 kN", "4 kN"]
+
+
+def study(folder, preload, state=""):
+    """The study of `faying init` at these preloads, under summits that yield."""
+    path = folder / "study.toml"
+    write(path, force=True, flat=False)
+    text = path.read_text(encoding="utf-8").replace("levels = []", 'levels = ["1 m/s^2"]')
+    text = text[: text.index("[surface]")] + KE + text[text.index("[[joint]]") :]
+    text = text.replace('["2 kN", "6 kN"]', json.dumps(preload))
+    text = text.replace("[[joint]]\n", "[[joint]]\ntangential = 0.6\n" + f'state = "{state}"\n' * bool(state), 1)
+    path.write_text(text.replace("count = ", "count = 3 # "), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def back(tmp_path_factory):
+    return study(tmp_path_factory.mktemp("back"), BACK)
+
+
+@pytest.fixture(scope="module")
+def result(back):
+    return faying.run(back)
+
+
+def test_a_preload_that_falls_comes_after_the_greatest(back, result, tmp_path):
+    """Names each once in tables, files and xarray; the interval moves with the frequency."""
+    assert Study.read(back).load_names == ("4 kN", "9 kN", "4 kN after 9 kN")
+    assert result.load_names == ("4 kN", "9 kN", "4 kN after 9 kN")
+    assert list(result.carried) == [0, 0, 9e3]
+    up, _, down = result.frequencies
+    assert np.all(down > up)
+    again = faying.load(result.save(tmp_path / "r.nc"))
+    assert again == result
+    assert float(again.to_xarray()["modes"].frequency.sel(load="4 kN after 9 kN")[0]) == pytest.approx(down[0])
+    best, low, high = result.interval.best, result.interval.low, result.interval.high
+    assert best[2] / best[0] == pytest.approx(down / up, rel=2e-3)
+    assert np.all((low[2] < best[2]) & (best[2] < high[2]))
+
+
+def test_both_engines_print_one_history(back, result):
+    direct = faying.run(back, engine="direct")
+    assert direct.frequencies == pytest.approx(result.frequencies, rel=1e-8)
+    assert direct.level_damping == pytest.approx(result.level_damping, rel=1e-2)
+
+
+def test_rising_preloads_are_what_they_are_without_a_history(result, tmp_path):
+    alone = faying.run(study(tmp_path, BACK[:2]))
+    assert result.frequencies[:2] == pytest.approx(alone.frequencies, rel=1e-8)
+    assert alone.carried is None
+
+
+def test_settled_joints_are_those_that_came_back(result, tmp_path):
+    """Before the greatest preload of the study they are as after it; at it they are on first loading."""
+    settled = faying.run(study(tmp_path, BACK[:2], "settled"))
+    assert settled.settled
+    assert settled.load_names == ("4 kN", "9 kN")
+    assert settled.frequencies[0] == pytest.approx(result.frequencies[2], rel=1e-7)
+    assert settled.frequencies[1] == pytest.approx(result.frequencies[1], rel=1e-8)
+    assert settled.bolt_numbers is not None
+    assert settled.bolt_numbers.embedding[0].ravel()[0] == 0  # what lasts has been left
+    assert not result.settled
+
+
+def test_the_answer_names_a_preload_that_fell_and_says_how_joints_are_loaded(back):
+    out = CliRunner().invoke(command, [str(back), "--no-files", "--all"]).stdout
+    assert "4 kN after 9 kN" in out
+    assert "loss in the joints, first loading" in " ".join(out.split())
+
+
+def test_load_cases_and_sheets_take_the_state_that_is_asked_for(back):
+    up = faying.bolt_sheet(back, "4 kN")
+    with pytest.raises(faying.InputError, match="may be '4 kN' or '4 kN after 9 kN'"):
+        faying.bolt_sheet(back, 4000)
+    down = faying.bolt_sheet(back, "4 kN after 9 kN")
+    assert up.load == down.load == 4e3
+    assert up.to_dict() != down.to_dict()
+
+
+def test_what_knows_first_loading_alone_says_so(back):
+    with pytest.raises(faying.InputError, match="joints on first loading"):
+        faying.predict(back)
+
+
+def test_joints_of_one_structure_share_a_state(tmp_path):
+    """The preload twice in a row, a state that does not exist, and two joints that differ."""
+    with pytest.raises(faying.InputError, match="two in a row are the same"):
+        Study.read(study(tmp_path, ["4 kN", "4 kN"]))
+    with pytest.raises(faying.InputError, match="state"):
+        Study.read(study(tmp_path, BACK, "loose"))
