@@ -11,7 +11,7 @@ from scipy.linalg import eigh, solve
 import faying
 from faying.fe.stress import part_stresses
 from faying.joint.attachments import Support
-from faying.service.excited import Excited
+from faying.service.excited import Excited, twins_along
 from tests.helpers.bars import SIMPLE, bars
 
 PRELOAD = 20e3
@@ -162,10 +162,10 @@ def test_more_input_means_more_damping_and_less_than_in_proportion():
         faying.vibration(
             bars(friction=0.05, held=True).structure.solve(PRELOAD, modes=3), [noise(g, direction=(0, 0, 1))]
         )[0]
-        for g in (1e-4, 1e-1)
+        for g in (1e-4, 10.0)
     ]
     assert levels[1].damping[1, 0] > levels[0].damping[1, 0] > 0.999 * REST
-    assert levels[1].level[1, 0] < np.sqrt(1e3) * levels[0].level[1, 0]
+    assert levels[1].level[1, 0] < np.sqrt(1e5) * levels[0].level[1, 0]
     low, best, high = levels[1].level[:, 0]
     assert low < best < high
 
@@ -176,7 +176,8 @@ def test_a_sweep_that_is_slow_has_the_peak_of_its_mode(state):
         "s", sine=[(f, 1e-3) for f in (500.0, 1.2 * state.frequencies[0])], direction=(0, 0, 1), rate=1.0
     )
     (found,) = faying.vibration(state, [sweep])
-    excited = Excited.of(state.structure, state.springs, state.vibration, sweep)
+    turned = twins_along(state.structure, state.vibration, sweep)
+    excited = Excited.of(state.structure, state.springs, turned, sweep)
     k = int(np.argmax(found.level[1]))
     exact = 1e-3 * abs(excited.force[k]) * excited.greatest[k] / (2 * found.damping[1, k])
     assert found.level[1, k] == pytest.approx(exact, rel=1e-3)
@@ -259,3 +260,27 @@ def test_a_table_comes_from_a_file(tmp_path):
     file = tmp_path / "psd.csv"
     file.write_text("frequency [Hz], psd [g^2/Hz]\n20, 0.01\n80, 0.04\n")
     assert faying.Excitation("f", psd=file).table.values / 9.80665**2 == pytest.approx([0.01, 0.04])
+
+
+@pytest.mark.parametrize("kind", ["random", "sine"])
+def test_twins_of_a_square_bar_slip_as_one_mode_along_what_shakes_it(kind):
+    """Along a side, a diagonal and between: the section is alike about all axes, and so is the motion.
+
+    1.5 % is what the few elements of the joint make of a direction. With the twins as the solver left them, noise made
+    34 % more of it.
+    """
+    state = bars(friction=0.3, held=True).structure.solve(preload=2e3, modes=2)
+    assert state.frequencies[0] == pytest.approx(state.frequencies[1], rel=1e-6)
+    rms, damping = [], []
+    for direction in ((0, 1, 0), (0, 1, 1), (0, 3, -4)):
+        given = noise(1000.0, direction=direction)
+        if kind == "sine":
+            given = faying.Excitation("sweep", sine=[(f, 20.0) for f in BAND], direction=direction, rate=1.0)
+        (found,) = faying.vibration(state, [given])
+        rms.append(np.linalg.norm(found.acceleration[1, 1, 1:]))
+        damping.append(sorted(found.damping[1]))
+    assert rms == pytest.approx([rms[0]] * 3, rel=1.5e-2)
+    least, most = np.array(damping).T
+    assert least == pytest.approx(REST, rel=1e-6)
+    assert most == pytest.approx([most[0]] * 3, rel=5e-2)
+    assert most[0] > (50 if kind == "random" else 1.03) * REST

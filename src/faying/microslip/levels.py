@@ -8,6 +8,7 @@ together.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.microslip.microslip import Microslip
 from faying.microslip.slip_model import SlipModel, slip_joints
+from faying.numerics.follow import same_group
 from faying.numerics.span import Span
 from faying.typing import Array
 
@@ -103,6 +105,19 @@ class LevelModel:
     vectors: Array
     rigid: int
 
+    @cached_property
+    def modes(self) -> tuple[Array, Array]:
+        """Angular frequencies [rad/s] (m,) at rest, rising, and mass-normalised shapes (m, m).
+
+        The basis begins with the modes at rest: of twins, whose plane has no directions of its own, they say which.
+        """
+        speeds, shapes = self.slip.modes
+        shapes = shapes.copy()
+        for group in np.unique(same_group(speeds), axis=0):
+            u, _, v = np.linalg.svd(shapes[:, group].T @ self.slip.mass[:, group])
+            shapes[:, group] = shapes[:, group] @ (u @ v)
+        return speeds, shapes
+
     def at(self, levels: Sequence[float], count: int) -> AtLevels:
         """The lowest elastic modes, so many, at each level: acceleration [m/s2] of the point that moves most."""
         found = [[self.cycle(level, k) for k in range(count)] for level in levels]
@@ -114,7 +129,7 @@ class LevelModel:
 
     def cycle(self, level: float, number: int) -> LevelCycle:
         """One elastic mode, counted from 0, at one level [m/s2]."""
-        speeds, shapes = self.slip.modes
+        speeds, shapes = self.modes
         number += self.rigid
         speed, shape = float(speeds[number]), shapes[:, number]
         rest, damping, error, softened = shape, 0.0, 0.0, (speeds, shapes)
@@ -205,7 +220,7 @@ class LevelModel:
             left = force[rows] - driven * motion[rows] @ self.slip.mass
             if harmonic == 1:
                 left = left + 2 * damping * driven * motion[1:2] @ self.slip.mass
-            speeds, shapes = (one[..., self.rigid :] for one in (softened if harmonic == 1 else self.slip.modes))
+            speeds, shapes = (one[..., self.rigid :] for one in (softened if harmonic == 1 else self.modes))
             stiff = speeds**2 - driven
             # a mode whose own speed is near that of the harmonic is left out
             flexible = np.where(np.abs(stiff) > MET * driven, 1 / np.where(stiff == 0, 1.0, stiff), 0.0)

@@ -156,6 +156,10 @@ def _march(
             return curve, True
         else:
             amplitude = float(np.linalg.norm(cycle.motion[1]))
+            if points and amplitude <= points[-1][0]:  # its shape changed by more than the level
+                level *= step
+                cycle = model.cycle(level, mode)
+                continue
             points.append((amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping))
             amplitudes, speeds, slips = np.array(points).T
             curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)

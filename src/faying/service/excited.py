@@ -5,7 +5,7 @@ y = s + sum_k y_k (q_k - f_k/omega_k^2) under a unit input, s the static answer,
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from faying.joint.load_path import LoadPaths
 from faying.joint.modal import Vibration
 from faying.joint.shank_forces import shank_forces
 from faying.joint.springs import Springs
+from faying.numerics.follow import same_group
 from faying.numerics.shifted import Shifted
 from faying.numerics.solve import conjugate_gradients
 from faying.study.vibration import Excitation, not_held
@@ -116,6 +117,19 @@ class Excited:
     def transfer(self, name: str, coordinates: Complex, amplitude: Array | float = 1.0) -> Complex:
         """A quantity (..., n) from the coordinates (m, n) of all modes under an input of amplitudes (n,)."""
         return self.static[name][..., None] * amplitude + self.reads[name] @ coordinates
+
+
+def twins_along(structure: BoltedStructure, found: Vibration, excitation: Excitation) -> Vibration:
+    """The modes with twins turned so that one of each pair has all of the force, as it alone moves."""
+    shapes = found.modes.shapes.copy()
+    force = shapes.T @ _input_force(structure, excitation)
+    elastic = np.arange(shapes.shape[1]) >= structure.rigid_count
+    for group in np.unique(same_group(found.modes.frequencies), axis=0):
+        own = group & elastic
+        if np.count_nonzero(own) > 1 and np.any(force[own]):
+            turn, _ = np.linalg.qr(np.column_stack([force[own], np.eye(np.count_nonzero(own))]))
+            shapes[:, own] = shapes[:, own] @ turn
+    return replace(found, modes=replace(found.modes, shapes=shapes))
 
 
 def _input_force(structure: BoltedStructure, excitation: Excitation) -> Array:

@@ -5,20 +5,16 @@ q is the coordinate of a mass-normalised shape: q'' + 2 zeta(a) omega(a) q' + om
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from faying.typing import Array, Complex, Mask
 
-# Gauss-Laguerre nodes of the power spent, which has an exponential density: with 24 the rms is off by up to 1.2 %, the
-# damping by 0.7 %, where slip goes from one plateau to another
-NODES = 24
-FINE = 3000  # amplitudes between which the power spent is interpolated, in logarithms
-# of the first and the last known amplitude: there the power spent is the square of the amplitude, to 1e-3 and 1e-6, and
-# it is so beyond, in steps of its logarithm
-FIRST_RATIO, LAST_RATIO, LOG_REACH = 1e-3, 1e3, 100.0
+# amplitudes over which a density is integrated, from a share of the first known one to a multiple of the last: to 1e-4
+GRID = 3000
+FIRST_RATIO, LAST_RATIO = 1e-6, 1e6
 # power over that with the frequency and damping at rest, between which the balance is sought: under white noise it is
 # 1; less where a mode that softens leaves the band of the input, more where it moves to a peak of it
 LEAST_POWER, MOST_POWER = 1e-6, 1e6
@@ -83,34 +79,29 @@ class ModeCurve:
 
     @cached_property
     def _spent(self) -> tuple[Array, Array]:
-        """Logarithms of amplitudes a, and of the integral of 2 zeta omega^3 a from 0 to them."""
-        a = np.geomspace(FIRST_RATIO * self.amplitudes[0], LAST_RATIO * self.amplitudes[-1], FINE)
+        """Amplitudes a (n,), even in logarithms, and the integral of 2 zeta omega^3 a from 0 to them (n,)."""
+        a = np.geomspace(FIRST_RATIO * self.amplitudes[0], LAST_RATIO * self.amplitudes[-1], GRID)
         speed, damping = self.at(a)
         rate = 2 * damping * speed**3 * a**2  # over log(a)
         parts = (rate[1:] + rate[:-1]) / 2 * np.diff(np.log(a))
-        spent = np.log(rate[0] / 2 + np.concatenate([[0.0], np.cumsum(parts)]))
-        far = np.array([-LOG_REACH, LOG_REACH])  # where it is the square of the amplitude
-        logs = np.insert(np.log(a), [0, FINE], np.log(a[[0, -1]]) + far)
-        return logs, np.insert(spent, [0, FINE], spent[[0, -1]] + 2 * far)
+        return a, rate[0] / 2 + np.concatenate([[0.0], np.cumsum(parts)])
 
     def under(self, power: float) -> RandomLevel:
         """The vibration in which noise gives the mode a mean power [m2 kg/s3] = E[zeta omega^3 a^2].
 
         The amplitude wanders slowly, driven by the noise and damped by zeta(a). Its density is a exp(-y), where power
-        times y is the integral of 2 zeta omega^3 a over a; for a linear mode that is Rayleigh's. Over y the density is
-        exp(-y)/(zeta omega^3). The linear mode that loses as much has zeta_eq = E[zeta omega^3 a^2]/E[omega^3 a^2] and
-        omega_eq^3 = E[omega^3 a^2]/E[a^2].
+        times y is the integral of 2 zeta omega^3 a over a; for a linear mode that is Rayleigh's. The linear mode that
+        loses as much has zeta_eq = E[zeta omega^3 a^2]/E[omega^3 a^2] and omega_eq^3 = E[omega^3 a^2]/E[a^2].
 
         Source:
             Stochastic averaging: Stratonovich 1963; Roberts and Spanos 1986, doi:10.1016/0020-7462(86)90025-9.
         """
-        y, weights = _laguerre()
-        if len(self.amplitudes):
-            a = np.exp(np.interp(np.log(power * y), self._spent[1], self._spent[0]))
-        else:
-            a = np.sqrt(power * y / (self.rest * self.speed**3))
+        if not len(self.amplitudes):
+            sigma = float(np.sqrt(power / (2 * self.rest * self.speed**3)))
+            return RandomLevel(sigma=sigma, speed=self.speed, damping=self.rest)
+        a, spent = self._spent
+        density = a**2 * np.exp(-spent / power)  # over log(a)
         speed, damping = self.at(a)
-        density = weights / (damping * speed**3)
         square = float(density @ a**2)
         cube = float(density @ (speed**3 * a**2)) / square
         lost = float(density @ (damping * speed**3 * a**2)) / square
@@ -166,8 +157,3 @@ class ModeCurve:
 def resistance(speed: Any, damping: Any, drive: Array) -> Complex:
     """Force over coordinate of a mode [1/s2] at circular frequencies [rad/s]: w^2 - W^2 + 2 i zeta w W."""
     return np.asarray(speed**2 - drive**2 + 2j * damping * speed * drive)
-
-
-@cache
-def _laguerre() -> tuple[Array, Array]:
-    return np.polynomial.laguerre.laggauss(NODES)

@@ -1,7 +1,7 @@
 """From a preloaded structure and what shakes it to the levels of its modes, and what points, bolts and joints bear."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -19,7 +19,7 @@ from faying.notes import Note
 from faying.result.provenance import Provenance
 from faying.result.vibration import VibrationResponse
 from faying.service.curves import CurveSets, curve_sets
-from faying.service.excited import Excited
+from faying.service.excited import Excited, twins_along
 from faying.service.mode_curve import ModeCurve
 from faying.service.spectra import greatest, resonance, rule, variance
 from faying.study.vibration import Excitation
@@ -93,6 +93,7 @@ def vibrate(base: Shaken, excitation: Excitation) -> VibrationResponse:
 
     Raises InputError where nothing holds the structure against it, or a face or a point is not there.
     """
+    base = replace(base, found=twins_along(base.structure, base.found, excitation))
     excited = Excited.of(base.structure, base.springs, base.found, excitation)
     elastic = slice(excited.rigid, None)
     needs = [partial(_needed, excitation, float(abs(force))) for force in excited.force[elastic]]
