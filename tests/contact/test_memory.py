@@ -9,6 +9,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import faying
+from faying.contact.asperity.kogut_etsion import KogutEtsion
 from faying.contact.asperity.unloading import EtsionKligermanKadin
 from faying.contact.memory import STEP, Memory
 from faying.contact.models.greenwood_williamson import GreenwoodWilliamson
@@ -133,6 +134,42 @@ def test_summits_unload_by_the_fits_of_finite_elements(asperity):
         # pressures of the table are a factor of two apart: 4 % next to the greatest pressure
         assert float(found.k_n) == pytest.approx(summed(raised, "stiffness"), rel=0.05)
         assert float(found.area) == pytest.approx(summed(raised, "area"), rel=0.05)
+
+
+@pytest.mark.parametrize(("over", "miss"), [(10.0, 0.11), (50.0, 0.01), (110.0, 0.03)])
+def test_a_sphere_comes_back_as_published_finite_elements_have_it(over, miss):
+    """Approach on the way back over the greatest, of a pressure bounded by the hardness, against the published fits.
+
+    They hold for elastic-plastic spheres. Near first yield the bound has too little flattening: 10 % of the approach at
+    ten times the critical interference, and 1 to 3 % from fifty times on.
+    """
+    radius = 1e-3
+    pair = faying.ContactPair(STEEL, "rigid")
+    loading = KogutEtsion(R=radius, pair=pair)
+    most = over * loading.critical
+    side = 4.84 * np.sqrt(radius * most)
+    n = 128
+    x = (np.arange(n) - (n - 1) / 2) * side / n
+    sphere = -(x[:, None] ** 2 + x**2) / (2 * radius)
+    given = {"E_star": pair.E_star, "periodic": False, "tol": 1e-8}
+    top = solve_half_space(sphere, side / n, displacement=most, hardness=STEEL.hardness, **given)
+    way = EtsionKligermanKadin(loading=loading, delta_max=most)
+    left = float(way.residual) / most
+    for share in (1e-4, 0.25, 0.5, 0.75):
+        back = solve_half_space(top.flattened, side / n, pressure=share * top.pressure, **given)
+        published = left + share ** (1 / float(way.exponents[0])) * (1 - left)
+        assert (sphere.max() - back.plane) / most == pytest.approx(published, abs=miss)
+
+
+def test_a_contact_at_a_displacement_has_its_points_at_hardness():
+    """By displacement, whose last start is all but the answer, and by its pressure: the same plateau."""
+    heights = faces(n=64).heights
+    by_pressure = solve_half_space(heights, 1e-3 / 32, E_star=PAIR.E_star, pressure=MOST, hardness=2e9, tol=1e-8)
+    found = solve_half_space(
+        heights, 1e-3 / 32, E_star=PAIR.E_star, displacement=by_pressure.approach, hardness=2e9, tol=1e-8
+    )
+    assert found.saturated == by_pressure.saturated > 0
+    assert found.plastic_work == pytest.approx(by_pressure.plastic_work, rel=1e-4)
 
 
 def test_a_law_that_says_nothing_of_unloading_says_so(law):

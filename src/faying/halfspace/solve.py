@@ -193,7 +193,9 @@ class _Pressing:
             problem,
             tol=options.tol if finest else max(options.tol, COARSE_TOLERANCE),
             start=start,
-            least=0 if finest else 1,  # a start may be good enough for a coarse map and bad for the next
+            # a start may be good enough for a coarse map and bad for the next; one step brings points to the hardness,
+            # below which a scaled start leaves them
+            least=0 if finest and options.hardness is None else 1,
             progress=self.progress if finest else None,
         )
 
