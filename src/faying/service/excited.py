@@ -126,8 +126,9 @@ def twins_along(structure: BoltedStructure, found: Vibration, excitation: Excita
     elastic = np.arange(shapes.shape[1]) >= structure.rigid_count
     for group in np.unique(same_group(found.modes.frequencies), axis=0):
         own = group & elastic
-        if np.count_nonzero(own) > 1 and np.any(force[own]):
-            turn, _ = np.linalg.qr(np.column_stack([force[own], np.eye(np.count_nonzero(own))]))
+        count = int(np.count_nonzero(own))
+        if count > 1 and np.any(force[own]):
+            turn, _ = np.linalg.qr(np.column_stack([force[own], np.eye(count)]))
             shapes[:, own] = shapes[:, own] @ turn
     return replace(found, modes=replace(found.modes, shapes=shapes))
 

@@ -109,6 +109,13 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
     help="Picture of where the scan touches at the last pressure; with halfspace among --models.",
 )
 @click.option("--conductance", is_flag=True, help="Also the thermal conductance h from k_n, for clean metal in vacuum.")
+@click.option(
+    "--to",
+    "program",
+    type=click.Choice(["abaqus", "calculix"]),
+    help="Print the law as a surface interaction of that program, with --unit.",
+)
+@click.option("--unit", help='With --to: unit of length of the model, such as "mm"; force in N.')
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--csv", "csv_file", type=NamedPath(dir_okay=False), help="Write all columns to a CSV file.")
 @click.option("--plot", type=NamedPath(dir_okay=False), help="Write a figure (png, pdf, svg).")
@@ -124,6 +131,8 @@ def command(
     contact_map: str | None,
     stability: bool,
     after: str | None,
+    program: str | None,
+    unit: str | None,
     **options: Any,
 ) -> None:
     """Real area, stiffness and loss of a contact law against nominal pressure.
@@ -155,6 +164,8 @@ def command(
         return
     if after and (stability or models or all_models):
         raise InputError("--after is for one law: leave out --stability, --models and --all-models")
+    if (program is None) is not (unit is None) or (program and (models or all_models or after)):
+        raise InputError('--to takes --unit, such as "mm", and one law on first loading: no --models and no --after')
     if models or all_models:
         if mates is None or not on_scan or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
@@ -167,6 +178,9 @@ def command(
     with nullcontext() if mates is None else law_table.watched(mates) as seen:
         choice = pick(kind, given, None, pair) if seen is None else seen.choose(kind, given)
         law = choice.law
+        if program is not None:
+            click.echo(interaction(law, program, unit), nl=False)
+            return
         response = law.at_pressure(pressures if pressure is not None else reached(law, pressures), after=after)
     h = conducted(law, response, pair) if options["conductance"] else None
     if csv_file:
@@ -189,6 +203,13 @@ def command(
         return
     before = [] if after is None else [f"the faces have carried {after} before, in place", ""]
     click.echo(folded("\n".join([*heading(choice, mates, kind, given), *before, table(law, response, h)])))
+
+
+def interaction(law: ContactLaw, program: str, unit: str | None) -> str:
+    """The law as a surface interaction of another program."""
+    from faying.export.law_tables import law_tables
+
+    return law_tables(law, program, unit=unit or "m")
 
 
 def conducted(law: ContactLaw, response: Response, pair: ContactPair) -> Array:
