@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 import faying
+from faying.answer.interval import _preload_factors
 from faying.answer.wave_band import Draws
 from faying.case.case import Case
 from faying.case.level_damping import REST
-from faying.case.scatter import SCORE, default, discrepancy, mode_sd, structure_sd, with_assumed
+from faying.case.scatter import SCORE, default, discrepancy, force_factors, mode_sd, structure_sd, with_assumed
 from faying.study import Study
 from tests.helpers.meshfiles import LOW_AND_HIGH, abaqus
 from tests.helpers.plates import stacked
@@ -162,3 +163,33 @@ def test_a_prediction_draws_waves_where_a_run_draws_them(tmp_path, rise):
         found = faying.predict(study, samples=8)
         assert found.answered == 8
         assert [note.text for note in found.notes if note.code == "no-waves"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "ends"),
+    [
+        ("", [1 - 0.14 * SCORE, 1 + 0.14 * SCORE]),
+        ('bolt.factor = "1 +- 0.1"', [1 - 0.1 * SCORE, 1 + 0.1 * SCORE]),
+        ('preload = { tightening = "load washer" }', [1 - 0.05 * SCORE, 1 + 0.05 * SCORE]),
+        ('bolt.preload = "8 kN +- 0.4 kN"', [1 - 0.05 * SCORE, 1 + 0.05 * SCORE]),
+    ],
+)
+def test_a_bolt_scatters_as_the_study_says_else_by_the_default_way(tmp_path, lines, ends):
+    (tmp_path / "model.inp").write_text(abaqus(stacked()))
+    (tmp_path / "study.toml").write_text(f"{CURVED}[uncertain]\nonly = true\n{lines}\n")
+    study = Study.read(tmp_path / "study.toml")
+    assert force_factors(study, study.bolts[0].name, np.array([0.05, 0.95])) == pytest.approx(ends, abs=1e-4)
+
+
+def test_a_bolt_that_is_not_listed_scatters_by_default_in_an_interval(tmp_path):
+    """One bolt tightened by elongation says nothing of the other one."""
+    bolt = (
+        '[[bolt]]\nname = "{0}"\nfaces = ["high.top", "low.bottom"]\nat = ["{0}0 mm", "20 mm", "10 mm"]\n'
+        'seat = ["0 mm", "16 mm"]\npreload = "8 kN"\n'
+    )
+    head, tail = CURVED.split("[[bolt]]")[0], CURVED[CURVED.index("[modes]") :]
+    (tmp_path / "model.inp").write_text(abaqus(stacked()))
+    listed = '[uncertain]\nbolt."2".factor = "1 +- 0.025"\n'
+    (tmp_path / "study.toml").write_text(f"{head}{bolt.format(2)}{bolt.format(6)}{tail}{listed}")
+    case = Case.of(Study.read(tmp_path / "study.toml"))
+    assert _preload_factors(case) == pytest.approx((1 - 0.14 * SCORE, 1, 1 + 0.14 * SCORE), abs=1e-4)

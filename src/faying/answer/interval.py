@@ -12,7 +12,7 @@ from faying.case.ends import quantiles, ratios_of
 from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
 from faying.case.part_tests import KnownParts
-from faying.case.scatter import LEVELS, SCATTER, SCORE, default, mode_sd, stated, structure_sd
+from faying.case.scatter import LEVELS, SCATTER, SCORE, force_factors, mode_sd, stated, structure_sd
 from faying.case.solve import LoadedCase
 from faying.errors import NotConverged
 from faying.joint.joint_law import JointLaw
@@ -199,16 +199,8 @@ def _combined(
 
 
 def _preload_factors(case: Case) -> tuple[float, float, float]:
-    """5, 50 and 95 % of a common factor on the preload of all bolts; of several that are listed the widest ends."""
-    known = stated(case.study.uncertain)
-    own = [one.quantile(LEVELS) for key, one in known.items() if key.startswith("bolt.") and key.endswith(".factor")]
-    # a preload that scatters has its median in the study
-    own += [
-        one.quantile(LEVELS) / one.median
-        for key, one in known.items()
-        if key.startswith("bolt.") and key.endswith(".preload")
-    ]
-    ends = np.stack(own or [default("preload").quantile(LEVELS)])
+    """5, 50 and 95 % of a common factor on the preload of all bolts; of bolts that scatter apart the widest ends."""
+    ends = np.stack([force_factors(case.study, bolt.name, LEVELS) for bolt in case.study.bolts])
     return float(ends[:, 0].min()), float(np.median(ends[:, 1])), float(ends[:, 2].max())
 
 

@@ -18,6 +18,7 @@ from faying.study.keys.joint import JointChoice
 from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice
 from faying.study.keys.varied import number_of
 from faying.study.study import Study
+from faying.typing import Array
 
 LEVELS = np.array([0.05, 0.5, 0.95])
 ENDS = LEVELS[[0, 2]]
@@ -111,6 +112,20 @@ def default(name: str) -> Distribution:
 def stated(choice: UncertainChoice | None) -> Mapping[str, Distribution]:
     """What [uncertain] says, by its key."""
     return {} if choice is None else {one.key: one.distribution for one in choice.inputs}
+
+
+def force_factors(study: Study, bolt: str, shares: Array) -> Array:
+    """Force of a bolt over the one that the study states [-], at shares of probability of any shape.
+
+    What [uncertain] says of the bolt or of all bolts, else the default way of tightening.
+    """
+    known = stated(study.uncertain)
+    for owner in (f"bolt.{bolt}", "bolt"):
+        if (factor := known.get(f"{owner}.factor")) is not None:
+            return factor.quantile(shares)
+        if (force := known.get(f"{owner}.preload")) is not None:  # the study has its median
+            return force.quantile(shares) / force.median
+    return default("preload").quantile(shares)
 
 
 def _parts_sd(choice: UncertainChoice | None) -> float | None:
