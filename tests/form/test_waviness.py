@@ -176,6 +176,29 @@ def test_waves_add_to_other_shapes_and_vary_by_key():
         crown.with_value("waviness_seed", 1)
 
 
+def test_what_belongs_to_the_second_face_moves_with_it():
+    """Moved by s, the second face has at x the height that it has at x - s; tilts do not count, and crowns stay."""
+    shift = np.array([0.8e-3, -0.3e-3])
+    moved, there = WAVES.height(GRID, AREA, 1, moved=GRID - shift), WAVES.height(GRID - shift, AREA, 1)
+    size = float(moved @ there / (there @ there))
+    assert size == pytest.approx(1, abs=0.05)  # `there` has the rms Wq over another piece of the face
+    assert moved == pytest.approx(size * there, rel=1e-6, abs=1e-15)
+    assert np.abs(moved - WAVES.height(GRID, AREA, 1)).max() > 0.3e-6
+    mesh = stacked(counts=(8, 4, 1))
+    interface = plates(mesh).joints[0].interface
+    axes, places = FaceAxes.of(mesh, FACES, interface), interface.positions
+    aside = shift[0] * axes.x_axis + shift[1] * axes.y_axis
+    for form in (Form(crown_along=5e-6), Form(twist=2e-6), Form(wave=3e-6, wave_length=0.03)):
+        assert not form.of_each_face
+        assert np.array_equal(form.at(places, axes, shift=aside), form.at(places, axes))
+    flat = Form(flatness=10e-6, seed=3)
+    assert flat.of_each_face
+    assert flat.at(places, axes, shift=0 * aside) == pytest.approx(flat.at(places, axes), abs=1e-18)
+    both = flat.at(places, axes, shift=aside) + flat.at(places + aside, axes, shift=aside)
+    first = flat.at(places + aside, axes, shift=2 * aside) + flat.at(places, axes)
+    assert both == pytest.approx(first, abs=1e-15)  # each face once at each place
+
+
 def test_the_spectrum_of_a_scan_is_continued():
     """A self-affine surface of Hurst exponent H: its rms grows as the side to the H, the waves hold what is added."""
     scan = ScanWaves(side=4e-3, Rq=0.8e-6, length=4e-3, hurst=0.7)

@@ -120,13 +120,21 @@ class Form:
                 )
         return waves
 
-    def at(self, positions: Array, axes: FaceAxes, weights: Array | None = None) -> Array:
+    @property
+    def of_each_face(self) -> bool:
+        """Whether anything of it belongs to the second face alone and moves with that face: see `at`."""
+        return self.waviness is not None or self.flatness > 0 or self.second is not None
+
+    def at(self, positions: Array, axes: FaceAxes, weights: Array | None = None, shift: Array | None = None) -> Array:
         """Gap [m] (q,) at positions (q, 3) [m] of a joint with these axes.
 
-        weights: area of each position (q,), which the mean plane of waves is fitted with; alike where None. Raises
-        InputError where the form does not fit.
+        weights: area of each position (q,), which the mean plane of waves is fitted with; alike where None. shift:
+        displacement (3,) [m] of the second face in its plane. Its waves, its random form and its map move with it; a
+        gap that was measured or given as one number is that of both faces together, and stays. Crowns and twist would
+        only tilt the face. Raises InputError where the form does not fit.
         """
         waves = self.laid(axes)
+        moved = positions if shift is None else positions - shift
         gap = np.zeros(len(positions))
         place = 2 * axes.local(positions) / np.array(axes.lengths)
         x, y = place.T
@@ -137,15 +145,15 @@ class Form:
             phase = np.pi * axes.lengths[0] * x / self.wave_length
             gap += abs(self.wave) / 2 - self.wave / 2 * np.cos(phase)
         if self.flatness:
-            for side in (0, 1):
-                gap += random_depth(place, self.flatness, self.seed, side)
+            for side, lies in enumerate((place, 2 * axes.local(moved) / np.array(axes.lengths))):
+                gap += random_depth(lies, self.flatness, self.seed, side)
         if waves is not None:
-            gap += waves.gap(positions, axes, weights)
+            gap += waves.gap(positions, axes, weights, None if shift is None else moved)
         if self.gap is not None:
             gap += self.gap.at(positions)
-        for face, outward in ((self.first, axes.normal), (self.second, -axes.normal)):
+        for face, outward, lies in ((self.first, axes.normal, positions), (self.second, -axes.normal, moved)):
             if face is not None:
-                gap += face.placed(axes, outward).at(positions)
+                gap += face.placed(axes, outward).at(lies)
         return gap
 
     def on(self, interface: Interface, mesh: Mesh, faces: tuple[str, str]) -> Interface:

@@ -178,7 +178,9 @@ class Waves:
         variance = (self.share(low) - self.share(high)) / WAVES
         return q, generator.standard_normal((2, WAVES)) * sqrt(variance)
 
-    def height(self, places: Array, weights: Array, side: int, carried: float = 0.0) -> Array:
+    def height(
+        self, places: Array, weights: Array, side: int, carried: float = 0.0, moved: Array | None = None
+    ) -> Array:
         """Height [m] (q,) of one face above its mean plane.
 
         Args:
@@ -186,14 +188,9 @@ class Waves:
             weights: share of the face that each stands for (q,), in any unit.
             side: 0 for the first face, 1 for the second.
             carried: waves shorter than this are left out [m]; the rest stays what it is with them.
+            moved: (q, 2) [m], the places of a face that lies elsewhere in its plane; its size is that at `places`.
         """
-        total, kept = np.zeros(len(places)), np.zeros(len(places))
-        for band in range(len(self.lengths) - 1):
-            q, (a, b) = self.waves(side, band)
-            phase = places @ q.T
-            parts = np.cos(phase) * a + np.sin(phase) * b
-            total += parts.sum(axis=1)
-            kept += parts @ (2 * np.pi / np.linalg.norm(q, axis=1) >= carried)
+        total, kept = self._sums(places, side, carried)
         root = np.sqrt(weights / weights.sum())
         plane = np.column_stack([np.ones(len(places)), places])
         scaled = plane * root[:, None]
@@ -201,12 +198,25 @@ class Waves:
         size = float(np.linalg.norm(root * rest))
         if size <= 0:
             raise InputError(f"waviness on {len(places)} points: a face with waves needs four points or more")
+        if moved is not None:
+            _, kept = self._sums(moved, side, carried)
         kept -= plane @ np.linalg.lstsq(scaled, root * kept, rcond=None)[0]
         return np.asarray(kept * (self.Wq / size))
 
-    def gap(self, places: Array, weights: Array, carried: float = 0.0) -> Array:
-        """Gap [m] (q,) of both faces, zero where they are nearest; see `height`."""
-        depth = self.height(places, weights, 0, carried) + self.height(places, weights, 1, carried)
+    def _sums(self, places: Array, side: int, carried: float) -> tuple[Array, Array]:
+        """Sum (q,) of all waves of one face, and of those that are carried, before they are scaled."""
+        total, kept = np.zeros(len(places)), np.zeros(len(places))
+        for band in range(len(self.lengths) - 1):
+            q, (a, b) = self.waves(side, band)
+            phase = places @ q.T
+            parts = np.cos(phase) * a + np.sin(phase) * b
+            total += parts.sum(axis=1)
+            kept += parts @ (2 * np.pi / np.linalg.norm(q, axis=1) >= carried)
+        return total, kept
+
+    def gap(self, places: Array, weights: Array, carried: float = 0.0, moved: Array | None = None) -> Array:
+        """Gap [m] (q,) of both faces, zero where they are nearest; moved: places on the second. See `height`."""
+        depth = self.height(places, weights, 0, carried) + self.height(places, weights, 1, carried, moved)
         return np.asarray(depth - depth.min())
 
 
@@ -228,10 +238,14 @@ class LaidWaves:
         """Share of the variance [-] in waves that the mesh does not carry."""
         return 1.0 - self.waves.share(self.carried)
 
-    def gap(self, positions: Array, axes: FaceAxes, weights: Array | None) -> Array:
-        """Gap [m] (q,) at positions (q, 3) [m]; weights: area of each (q,), alike where None."""
+    def gap(self, positions: Array, axes: FaceAxes, weights: Array | None, moved: Array | None = None) -> Array:
+        """Gap [m] (q,) at positions (q, 3) [m]; weights: area of each (q,), alike where None.
+
+        moved: what lies there of the second face, by its positions (q, 3) [m] as modelled.
+        """
         shares = np.ones(len(positions)) if weights is None else weights
-        return self.waves.gap(axes.steady(positions), shares, self.carried)
+        second = None if moved is None else axes.steady(moved)
+        return self.waves.gap(axes.steady(positions), shares, self.carried, second)
 
     def words(self) -> str:
         """Which waves these are, for people."""
