@@ -15,6 +15,7 @@ from faying.errors import InputError
 from faying.halfspace import error_bound, solve_half_space
 from faying.halfspace.solve import halved_map
 from faying.materials import CATALOGUE, RIGID, ContactPair, Material
+from tests.helpers.scans import gaussian
 
 STEEL = replace(CATALOGUE["45 steel"], brinell=None, vickers=None)  # one hardness for spots of every size
 PAIR = ContactPair(STEEL, RIGID)
@@ -204,3 +205,26 @@ def test_machined_steel_at_its_hardness(name):
         assert error_bound(z, 5e-6, contact.traction, E_star=E_star, hardness=0.0045 * E_star) < 1e-6
         # nearly all that touches is at hardness: the area is little more than pressure over hardness
         assert 1 <= contact.area * 0.0045 * E_star / pressure < 1.1 + 4 / np.count_nonzero(contact.traction)
+
+
+@pytest.mark.slow
+def test_the_error_of_one_window_does_not_shrink_with_the_face():
+    """A face of 16 windows has the mean k_n of all; one scanned window misses it as far as windows differ.
+
+    Its range contains the mean. Divided by the root of 16 it would be too narrow: only a mean of 16 scans is so sure.
+    """
+    heights = gaussian(0.8, 0.125, 0.02, 1e-6, 1, points=256, side=1.0)
+    pressure, n = 20e6, 64
+    y, x = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, n), indexing="ij")
+    logs, errors = [], []
+    for part in heights.reshape(4, n, 4, n).swapaxes(1, 2).reshape(16, n, n):
+        flat = part - part.mean() - x * (x * part).mean() / (x * x).mean() - y * (y * part).mean() / (y * y).mean()
+        scan = SimpleNamespace(heights=flat, spacing=(1e-3 / 256, 1e-3 / 256))
+        series = HalfSpace(scan, PAIR, points=4, lowest=5e6, highest=80e6, tol=1e-3).series
+        at = np.log(pressure), np.log(series.pressure)
+        logs.append(np.interp(*at, np.log(series.values["k_n"])))
+        errors.append(np.interp(*at, series.window))
+    off, error = np.array(logs) - np.log(np.exp(logs).mean()), np.array(errors)
+    assert np.mean(np.abs(off) < error) > 0.8
+    assert np.sqrt(np.mean(off**2)) > np.sqrt(np.mean((error / 4) ** 2))
+    assert np.mean(np.abs(off) < error / 4) < 0.68  # of a standard error that is right
