@@ -35,6 +35,7 @@ from .form.gap_map import FaceMap as FaceMap
 from .form.gap_map import GapMap as GapMap
 from .form.waviness import Waviness as Waviness
 from .halfspace import solve_half_space as solve_half_space
+from .identify.assemblies import Assemblies as Assemblies
 from .identify.identification import Identification as Identification
 from .identify.of_study import identify as identify
 from .identify.predict import predict as predict

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from faying.errors import ReadError
+from faying.identify.assemblies import Assemblies
 from faying.identify.identification import Identification
 from faying.identify.prediction import Prediction
 from faying.loads.record import LoadCases
@@ -13,13 +14,13 @@ from faying.result.fields import RECORD, RESULT_FILE, read_tree
 from faying.result.result import Result
 from faying.result.vibration import VibrationResponse
 
-Saved = Result | Backbone | Prediction | Identification | LoadCases | VibrationResponse
+Saved = Result | Backbone | Prediction | Assemblies | Identification | LoadCases | VibrationResponse
 KINDS: tuple[Any, ...] = get_args(Saved)
 
 
 @checked_call
 def load(path: str | Path) -> Saved:
-    """Read a file that Faying has saved: a result, a backbone, a prediction, an identification, load cases, vibration.
+    """Read a file that Faying has saved: a result, a backbone, a prediction, assemblies, an identification, and so on.
 
     Args:
         path: The file, or the folder of a run.

@@ -13,7 +13,7 @@ from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, paired_modes
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
-from faying.identify.predict import check, cut_notes, of_bases, part_test_notes
+from faying.identify.predict import MIN_SAMPLES, check, check_seed, cut_notes, of_bases, part_test_notes
 from faying.identify.sampling.ensemble import Ensemble, scattering
 from faying.identify.sampling.evaluate import LIMIT, Reduced
 from faying.identify.sampling.store import SampleStore
@@ -122,7 +122,8 @@ def identify(
         doi:10.1061/(ASCE)0733-9399(2007)133:7(816), for the sampling.
     """
     study = Study.read_bolted(study, first_loading=True)
-    check(study, 8, seed)
+    check_seed(seed)
+    check(study, MIN_SAMPLES)
     if isinstance(count, bool) or not isinstance(count, int) or count < 100:
         raise InputError(f"count = {count!r} should be a whole number of 100 or more")
     if study.test is None or not study.test.points:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -11,8 +11,10 @@ from faying.case.case import mates_notes
 from faying.case.provenance import provenance
 from faying.case.scatter import discrepancy, with_assumed
 from faying.errors import InputError
+from faying.identify.assemblies import Assemblies
 from faying.identify.identity import paired, paired_modes
 from faying.identify.prediction import Prediction
+from faying.identify.reassembly import reassembled
 from faying.identify.sampling.ensemble import Ensemble, by_reason
 from faying.identify.sampling.evaluate import LIMIT, Reduced
 from faying.identify.sampling.follow import Follower, choice_of, sliding
@@ -32,6 +34,32 @@ TOLERANCE = 1e-3  # relative error of a frequency by the bases from which it is 
 MOVED = 0.1  # of the distance from 5 to 95 % that half of the samples may move either by
 
 
+@overload
+def predict(
+    study: Study | str | Path,
+    samples: int = ...,
+    seed: int = ...,
+    *,
+    jobs: int = ...,
+    out: str | Path | None = ...,
+    report: Report | None = ...,
+    backbones: int = ...,
+    assemblies: None = ...,
+) -> Prediction: ...
+
+
+@overload
+def predict(
+    study: Study | str | Path,
+    *,
+    seed: int = ...,
+    jobs: int = ...,
+    out: str | Path | None = ...,
+    report: Report | None = ...,
+    assemblies: int,
+) -> Assemblies: ...
+
+
 @checked_call
 def predict(
     study: Study | str | Path,
@@ -42,7 +70,8 @@ def predict(
     out: str | Path | None = None,
     report: Report | None = None,
     backbones: int = 0,
-) -> Prediction:
+    assemblies: int | None = None,
+) -> Prediction | Assemblies:
     """Evaluate a study under the scatter of its numbers: as its [uncertain] says, and as is assumed of the rest.
 
     The parts are reduced once to small bases; every sample is evaluated in these, at each load of the study.
@@ -56,9 +85,13 @@ def predict(
         report: called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
         backbones: samples, the first of all, in which the mode of [backbone] is followed, each in full: 8 to `samples`;
             0 for none.
+        assemblies: how often one structure is taken apart and bolted together again, 2 or more, each solved in full,
+            in place of samples of structures: the force of each bolt, their order and the position of the parts within
+            their holes are drawn, and nothing else.
 
     Returns:
-        The samples with their frequencies; `quantiles()` and `shares()` say what they come to.
+        The samples with their frequencies; `quantiles()` and `shares()` say what they come to. With `assemblies` the
+        `Assemblies`.
 
     Raises:
         InputError: nothing in the study scatters, it does not fit, or no sample has an answer.
@@ -68,7 +101,12 @@ def predict(
         Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
     """
     study = Study.read_bolted(study, first_loading=True)
-    check(study, samples, seed)
+    check_seed(seed)
+    if assemblies is not None:
+        if backbones:
+            raise InputError("assemblies have no backbones; ask for one of them")
+        return reassembled(study, assemblies, seed, jobs=jobs, out=None if out is None else Path(out), report=report)
+    check(study, samples)
     (report or silent)("mesh", 0, 0)
     study = replace(study, uncertain=with_assumed(study))
     choice = choice_of(study, samples, backbones) if backbones else None
@@ -88,14 +126,18 @@ def predict(
     return found
 
 
-def check(study: Study, samples: int, seed: int) -> None:
+def check_seed(seed: int) -> None:
+    """Raise InputError for what is not a seed."""
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError(f"seed = {seed!r} should be a whole number of 0 or more")
+
+
+def check(study: Study, samples: int) -> None:
     """Raise InputError for counts that make no prediction, and for studies that bases cannot hold."""
     if isinstance(samples, bool) or not isinstance(samples, int) or not MIN_SAMPLES <= samples <= MAX_SAMPLES:
         raise InputError(
             f"samples = {samples!r} should be a whole number from {MIN_SAMPLES} to {MAX_SAMPLES:,}, for example 1024"
         )
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError(f"seed = {seed!r} should be a whole number of 0 or more")
     if study.modes.damping == "viscous":
         raise InputError("a prediction gives hysteretic loss; leave out modes.damping")
     if any(joint.springs == "per-node" for joint in study.joints):

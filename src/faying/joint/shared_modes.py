@@ -1,11 +1,13 @@
 """Preloads and modes of a structure in one state after another, by one factorisation where that will do."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, final
 
 from faying.errors import NotConverged
 from faying.fe.interface import Interface
 from faying.joint.assembled_parts import added
+from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import EXACT, SPARE_MODES, ModalProblem, Vibration, in_order_of
 from faying.joint.preload import PreloadProblem
@@ -171,6 +173,14 @@ class Reanalysis:
         self.modal, self._preloads, self._shared = modal, preloads, SharedModes()
         self._problem = modal.structure.assembly(solver=modal.choice.solver)
         self._looked = False  # for modes that only the ends of a range bring among the lowest
+
+    def like(self, structure: BoltedStructure, preloads: Sequence[PreloadCase]) -> "Reanalysis":
+        """An engine of a structure with other gaps on the same joints; it goes on with what this one has factorised."""
+        made = Reanalysis(replace(self.modal, structure=structure), preloads)
+        made._shared = self._shared
+        if (factor := self._problem.factor) is not None:
+            made._problem.adopt_factor(factor, self._problem.shift_frequency)
+        return made
 
     def preload(self, number: int) -> PreloadState:
         """See `Engine`."""

@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -9,6 +10,11 @@ from faying.cli.options import FILE, PATH, show
 from faying.cli.progress import Form, Shown, progress_options
 from faying.errors import InputError
 from faying.files import new_folder, write_text
+
+if TYPE_CHECKING:
+    from faying.study import Study
+NOT_OF_ASSEMBLIES = ("samples", "plot", "tornado", "scatter", "backbones", "bands", "html")  # what no assembly has
+DEFAULT = click.core.ParameterSource.DEFAULT
 
 
 @click.command()
@@ -29,6 +35,12 @@ from faying.files import new_folder, write_text
     help="Follow the mode of [backbone] to large amplitudes in the first N samples.",
 )
 @click.option("--bands", type=FILE, help="Draw the bands of the backbones.")
+@click.option(
+    "--assemblies",
+    type=click.IntRange(2, 100_000),
+    metavar="N",
+    help="Take one structure apart and bolt it together again N times, in place of samples of structures.",
+)
 @click.option("--html", type=FILE, help="Write tables and figures as one page.")
 @click.option("--json", "as_json", is_flag=True, help="Print the quantiles and shares as JSON.")
 @progress_options
@@ -43,13 +55,15 @@ def command(
     scatter: Path | None,
     backbones: int | None,
     bands: Path | None,
+    assemblies: int | None,
     html: Path | None,
     as_json: bool,
     progress: Form | None,
 ) -> None:
     """Intervals of the frequencies of STUDY from the scatter in its [uncertain], and which input causes them.
 
-    With --backbones also those of a mode's frequency and damping against its amplitude.
+    With --backbones also those of a mode's frequency and damping against its amplitude. With --assemblies the scatter
+    of one structure that is taken apart and bolted together again.
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
@@ -61,6 +75,14 @@ def command(
     from faying.study import Study
     from faying.style import check_figure, save
 
+    if assemblies:
+        given = {
+            name for name in NOT_OF_ASSEMBLIES if click.get_current_context().get_parameter_source(name) is not DEFAULT
+        }
+        if given:
+            raise InputError(f"--assemblies gives tables and a file; leave out --{min(given)}")
+        _assembled(Study.read(study), assemblies, seed, jobs=jobs, out=out, as_json=as_json, progress=progress)
+        return
     if bands and not backbones:
         raise InputError("--bands draws backbones; ask for them with --backbones 32")
     figures = {
@@ -73,7 +95,7 @@ def command(
         if file:
             check_figure(file)
     plan = Study.read(study)
-    check(plan, samples, seed)
+    check(plan, samples)
     if backbones:
         choice_of(plan, samples, backbones)
     out = out or plan.results / "prediction.nc"
@@ -91,3 +113,18 @@ def command(
     if html:
         files.append(write_text(html, predicted(found)))
     show(as_json, found.to_dict, lambda: text(found), files)
+
+
+def _assembled(
+    plan: "Study", count: int, seed: int, *, jobs: int | None, out: Path | None, as_json: bool, progress: Form | None
+) -> None:
+    """Predict the scatter between assemblies of one structure, and show it."""
+    from faying.identify.predict import predict
+    from faying.identify.reassembly import check_assemblies
+    from faying.output.assemblies import text
+
+    check_assemblies(plan, count)
+    out = out or plan.results / "assemblies.nc"
+    with new_folder(out.parent, "give another file with --out"), Shown("predict", progress) as report:
+        found = predict(plan, assemblies=count, seed=seed, jobs=jobs or os.cpu_count() or 1, out=out, report=report)
+    show(as_json, found.to_dict, lambda: text(found), [out])
