@@ -1,5 +1,6 @@
 """One structure taken apart and bolted together again: limits, other routes to the same numbers, words."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -158,6 +159,9 @@ def test_assemblies_are_written_shown_and_read(all_drawn, tmp_path):
     done = CliRunner().invoke(command, [str(study.folder / "study.toml"), *given], catch_exceptions=False)
     assert max(map(len, done.stdout.splitlines()[:-1])) <= 80
     assert "position alone [%]" in done.stdout
+    told = json.loads(CliRunner().invoke(command, [str(study.folder / "study.toml"), *given, "--json"]).stdout)
+    assert told["modelled"]["values"] == found.modelled.tolist()
+    assert np.shape(told["deviation_alone"]["values"]) == (3, 1, 4)
     assert Assemblies.load(tmp_path / "two.nc").frequencies.shape == (2, 1, 4)
 
 

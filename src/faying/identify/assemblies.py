@@ -8,7 +8,7 @@ import numpy as np
 
 from faying.misuse import checked_call
 from faying.notes import Note
-from faying.result.fields import Recorded, load_texts, optional, variable
+from faying.result.fields import Recorded, in_units, load_texts, optional, variable
 from faying.result.fields import listed as numbers
 from faying.result.provenance import Provenance
 from faying.text import listed, notes_row
@@ -119,22 +119,16 @@ class Assemblies(Recorded):
 
     def to_dict(self) -> dict[str, Any]:
         """Return a summary ready for JSON, in SI units; the assemblies are in the file."""
-
-        def of(values: Array | None, unit: str = "Hz") -> dict[str, Any]:
-            return {"unit": unit, "values": None if values is None else numbers(values)}
-
         return {
             "title": self.title,
             "assemblies": len(self.frequencies),
             "answered": int(np.count_nonzero(self.sound)),
             "without_answer": self.reasons,
             "drawn": list(self.sources),
-            "loads": of(self.loads, "N"),
-            "frequencies_as_modelled": of(self.modelled),
-            "quantiles": {"levels": list(ENDS), "frequencies": of(self.quantiles())},
-            "deviation": of(self.deviation, "1"),
-            "deviation_alone": of(self.deviation_alone, "1"),
-            "structures": {"levels": list(ENDS), "low": of(self.low), "high": of(self.high)},
+            **in_units(self, without=("assembly",)),
+            "quantiles": {"levels": list(ENDS), "frequencies": {"unit": "Hz", "values": numbers(self.quantiles())}},
+            "deviation": {"unit": "1", "values": numbers(self.deviation)},
+            "deviation_alone": {"unit": "1", "values": numbers(self.deviation_alone)},
             "notes": [{"code": note.code, "text": note.text} for note in self.notes],
         }
 
