@@ -19,7 +19,7 @@ ORDER = [
     {"hardness", "misuse", "text", "data_sets", "typeset"},
     {"materials", "netcdf", "columns", "distribution", "cache", "style"},
     {"numerics", "surface"},
-    {"mpi", "fe", "halfspace"},
+    {"fe", "halfspace"},
     {"geometry", "bolt", "contact", "asperity_fe"},
     {"form"},
     {"joint"},

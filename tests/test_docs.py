@@ -12,7 +12,6 @@ import click
 import pytest
 
 from faying.cli.main import cli
-from tests.helpers.mpi import missing_mpi
 
 ROOT = Path(__file__).parent.parent
 SITE = ROOT / "docs" / "generated"  # made by a build of the site
@@ -66,10 +65,8 @@ def test_commands(page, checkout):
             continue
         if line == "app":  # it serves until it is ended; tests/app has it
             continue
-        # maybe no MPI is here: tests/mpi has it
         # twelve runs are minutes: tests/form/test_waviness.py has the draws
-        of_mpi = "--mpi" in shlex.split(line) and missing_mpi()
-        if "waviness_seed" in line or of_mpi:
+        if "waviness_seed" in line:
             named, *words = shlex.split(line)
             command = cli.get_command(click.Context(cli), named)
             command.make_context(named, words)  # raises where the words are wrong

@@ -1,4 +1,4 @@
-"""`faying modes`: of a study, of matrices in files, and over two processes of mpiexec."""
+"""`faying modes`: of a study, and of matrices in files."""
 
 import json
 
@@ -8,8 +8,6 @@ from scipy.io import mmwrite
 from scipy.sparse import load_npz
 
 from faying.cli import main
-from faying.numerics.modal_reanalysis import REFINED
-from tests.helpers.mpi import mpi as mpi
 from tests.helpers.studies import write
 
 
@@ -81,31 +79,3 @@ def test_faults(exported, capsys, tmp_path):
     assert "brings its mass with it" in fault(capsys, two)
     (tmp_path / "file").write_text("")
     assert "cannot make the folder" in fault(capsys, ["modes", study, "--export", str(tmp_path / "file" / "x")])
-
-
-@pytest.mark.slow
-def test_over_two_processes(exported, capsys, mpi):
-    """Of the matrices with the coordinates that --export has written."""
-    out = exported / "out"
-    argv = ["modes", "--stiffness", str(out / "stiffness.npz"), "--mass", str(out / "mass.npz")]
-    argv += ["--count", "9", "--shift", "800 Hz"]
-    direct = values(capsys, argv)
-    main_quietly([*argv, "--points", str(out / "points.txt"), "--mpi", "2"])
-    head, costs, _, *lines = capsys.readouterr().out.splitlines()
-    assert "GAMG" in head
-    assert "iterations; memory of the 2 processes" in costs
-    over = np.array([float(line.split()[1]) for line in lines])
-    assert np.all(over[:6] < 1)
-    assert over[6:] == pytest.approx(direct[6:], rel=REFINED / 2)
-
-
-def test_faults_of_points(exported, capsys, tmp_path):
-    out, file = exported / "out", tmp_path / "points.txt"
-    argv = ["modes", "--stiffness", str(out / "stiffness.npz"), "--mass", str(out / "mass.npz"), "--points", str(file)]
-    assert "no file" in fault(capsys, argv)
-    file.write_text("1 2 three\n")
-    assert "should have x y z [m]" in fault(capsys, argv)
-    file.write_text("1 2 3\n")
-    assert "has 1 rows of 3" in fault(capsys, argv)
-    study = str(exported / "study.toml")
-    assert "--points is for --stiffness" in fault(capsys, ["modes", study, "--points", str(file)])

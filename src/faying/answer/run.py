@@ -23,14 +23,12 @@ from faying.case.mesh_error import mesh_error, mesh_notes
 from faying.case.provenance import provenance
 from faying.case.scatter import IN_INTERVALS
 from faying.case.solve import LoadedCase, released, solve
-from faying.errors import InputError, NotConverged
+from faying.errors import NotConverged
 from faying.fe.stress import at_outline, greatest_stresses, part_stresses
 from faying.joint.structure import Structure
 from faying.misuse import checked_call
-from faying.mpi.over_mpi import OverMpi
 from faying.notes import Note
 from faying.numerics.follow import between_by_rank
-from faying.numerics.solve import chosen, is_mpi
 from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
 from faying.result.vibration import VibrationResponse
@@ -72,10 +70,6 @@ def run(
     study = Study.read(study)
     if refine is not None:
         return refined(study, tolerance_of(refine), lambda finer: run(finer, report=report, engine=engine))
-    if study.backbone is not None and is_mpi(chosen(study.modes.solver)):
-        raise InputError(
-            "[backbone] needs a factorisation, which MPI does not have; leave out [backbone], or the MPI processes"
-        )
     if study.backbone is not None:
         friction_of(study, study.backbone)  # raises, before the work, where nothing can slip
     progress = Progress(len(stages(study)), report)
@@ -176,8 +170,6 @@ def collect(
     every += level_notes(case, [state.levels for state in states], lossless)
     every += [*(note for b in alternatives for note in b.notes), *_closing_notes(study, rigid, first)]
     way = structure.solver(study.modes.solver)
-    if isinstance(way, OverMpi):
-        every.append(Note(code="mpi", text=f"{way.summary}; no count checks for missed modes"))
     result = Result(
         title=study.title,
         loads=case.loads,

@@ -9,7 +9,6 @@ from faying.case.case import Case
 from faying.joint.bolted import bond, merged
 from faying.joint.shared_modes import modes_with
 from faying.joint.support_check import RIGID_BELOW
-from faying.mpi.over_mpi import OverMpi
 from faying.notes import Note
 from faying.numerics.by_parts import PartByPart
 from faying.numerics.constraint import constrain
@@ -64,11 +63,7 @@ def _merged(case: Case, merge: Any) -> Array:
     K, M = (merged(matrix, merge) for matrix in structure.dynamic_matrices)
     share = np.asarray(merge.sum(axis=0)).ravel()
     rigid = (merge.T @ structure.rigid) / share[:, None]
-    way = structure.solver(case.study.modes.solver)
-    if isinstance(way, OverMpi):
-        points = (merge.T @ structure.mesh.points.ravel() / share).reshape(-1, 3)
-        way = OverMpi(points, way.processes)
-    return modes_with(case.modal, K, M, rigid=rigid, solver=way).frequencies[_elastic(case)]
+    return modes_with(case.modal, K, M, rigid=rigid).frequencies[_elastic(case)]
 
 
 def _tied(case: Case) -> Array:

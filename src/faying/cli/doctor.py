@@ -84,14 +84,6 @@ def _instruments() -> dict[str, str]:
     return finding("files of most profilometers are read")
 
 
-def _mpi() -> dict[str, str]:
-    from shutil import which
-
-    if which("mpiexec") is None:
-        return finding("no mpiexec on the path", "optional", "only --mpi needs it, with petsc4py")
-    return finding(str(which("mpiexec")))
-
-
 def _browser() -> dict[str, str]:
     import webbrowser
 
@@ -122,7 +114,6 @@ LOOKS: dict[str, Callable[[], dict[str, Any]]] = {
     "memory": _memory,
     "STEP": _step,
     "instruments": _instruments,
-    "MPI": _mpi,
     "browser": _browser,
     "cache": _cache,
     "terminal": _screen,

@@ -29,7 +29,7 @@ COMMANDS = {
     "law": ("scan.law", "Curves of a contact law: area, stiffness and loss against pressure."),
     "loads": ("loads", "Bolt forces, opening and slip under load cases about the preload."),
     "models": ("scan.models", "List the contact models with their sources, inputs and ranges."),
-    "modes": ("modes", "Real modes of a study or of assembled matrices, also over many machines."),
+    "modes": ("modes", "Real modes of a study or of assembled matrices."),
     "new": ("new", "Write a study of your own STEP file: joints, bolts, seats, mesh."),
     "predict": ("measured.predict", "Intervals of the frequencies from uncertain inputs, and which input causes them."),
     "ring-down": ("measured.ring_down", "Frequency and damping over amplitude from a free decay."),

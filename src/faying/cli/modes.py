@@ -1,7 +1,6 @@
 """faying modes [STUDY.toml] --stiffness FILE --mass FILE"""
 
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -22,17 +21,6 @@ from faying.text import json_text
 )
 @click.option("--shift", metavar="FREQUENCY", help='Frequency of the spectral shift, for example "100 Hz" [found].')
 @click.option(
-    "--points",
-    type=PATH,
-    help="With --stiffness and --mpi: x y z [m] of each node, in the order of the matrices, three unknowns a node.",
-)
-@click.option(
-    "--mpi",
-    type=click.IntRange(1, 1_000_000),
-    metavar="PROCESSES",
-    help="Solve with PETSc in this number of processes, started by mpiexec.",
-)
-@click.option(
     "--export",
     type=PATH,
     metavar="DIR",
@@ -47,8 +35,6 @@ def command(
     mass_unit: str,
     count: int,
     shift: str | None,
-    points: Path | None,
-    mpi: int | None,
     export: Path | None,
     as_json: bool,
 ) -> None:
@@ -60,51 +46,27 @@ def command(
     if (study is None) == (stiffness is None):
         raise InputError("give either a study or --stiffness and --mass, for example faying modes study.toml")
     if study is not None:
-        for name, option in (("--mass", mass), ("--points", points)):
-            if option is not None:
-                raise InputError(f"{name} is for --stiffness; a study has its own")
+        if mass is not None:
+            raise InputError("--mass is for --stiffness; a study has its own")
         given = Assembled.of_study(Study.read(study))
     else:
         assert stiffness is not None
-        given = Assembled.of_files(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit, points=points)
+        given = Assembled.of_files(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
     if export is not None:
         files = given.write(export)
         click.echo(f"shift {given.shift_frequency:.6g} Hz; written to {export}: {', '.join(f.name for f in files)}")
         return
     frequency = units.parse(shift, "Hz", name="--shift") if shift else given.shift_frequency
-    found = modes_of(given, count, frequency).to_dict() if mpi is None else _over_mpi(given, count, frequency, mpi)
+    found = modes_of(given, count, frequency).to_dict()
     if as_json:
         click.echo(json_text(found))
         return
     click.echo(f"{found['source']}: {found['unknowns']:,} unknowns, {found['solver']}")
-    if mpi is not None:
-        peaks = ", ".join(f"{peak / 1e9:.3g}" for peak in found["process_memory"]["values"])
-        click.echo(f"{found['iterations']} iterations; memory of the {mpi} processes: {peaks} GB")
-    if "mass" in found:
-        click.echo(f"mass along x, y, z: {', '.join(f'{m:.6g} kg' for m in found['mass']['values'])}")
+    click.echo(f"mass along x, y, z: {', '.join(f'{m:.6g} kg' for m in found['mass']['values'])}")
     click.echo("")
     for number, value in enumerate(found["frequencies"]["values"], start=1):
         click.echo(f"{number:4d} {value:14.6f} Hz")
-    if found.get("missed"):
+    if found["missed"]:
         click.echo(
             f"note: {found['missed']} modes below the last of these are missing; give another --shift, below the first"
         )
-
-
-def _over_mpi(given: Any, count: int, shift: float, processes: int) -> dict[str, Any]:
-    from faying.export.modes_over_mpi import modes_over_mpi
-
-    modes, solver = modes_over_mpi(
-        given.stiffness, given.mass, count, shift_frequency=shift, processes=processes, points=given.points
-    )
-    return {
-        "source": given.source,
-        "unknowns": int(given.mass.shape[0]),
-        "solver": modes.factorisation.name,
-        "processes": processes,
-        "iterations": solver.steps,
-        "process_memory": {"unit": "B", "values": solver.peak.tolist()},
-        "process_cpu": {"unit": "s", "values": solver.cpu.tolist()},
-        "error_of_squares": modes.error.tolist(),
-        "frequencies": {"unit": "Hz", "values": modes.frequencies.tolist()},
-    }

@@ -1,7 +1,6 @@
 """faying run STUDY.toml"""
 
 from contextlib import nullcontext
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +26,6 @@ MIN_MODES = 3  # that the table has, however wide it is
 @click.option("--no-files", is_flag=True, help="Write no files, only print.")
 @click.option("--uff", is_flag=True, help="Write modes and frequency responses as universal files, too (.uff).")
 @click.option(
-    "--mpi",
-    type=click.IntRange(1, 1_000_000),
-    metavar="PROCESSES",
-    help="Solve by multigrid in this number of processes, started by mpiexec, instead of a factorisation.",
-)
-@click.option(
     "--engine",
     type=click.Choice(("reanalysis", "direct")),
     default="reanalysis",
@@ -51,7 +44,6 @@ def command(
     everything: bool,
     no_files: bool,
     uff: bool,
-    mpi: int | None,
     engine: str,
     refine: str | None,
     progress: Form | None,
@@ -59,14 +51,11 @@ def command(
     """Run STUDY: surface, contact law, preload, modes; write NetCDF, CSV, figures and a report."""
     from faying.answer.run import run, stages
     from faying.export import universal
-    from faying.numerics.solve import MPI
     from faying.output import report
     from faying.result.fields import RESULT_FILE
     from faying.study import Study
 
     plan = Study.read(study)
-    if mpi is not None:
-        plan = replace(plan, modes=replace(plan.modes, solver=f"{MPI}:{mpi}"))
     if uff and no_files:
         raise InputError("--uff writes files and --no-files forbids them; leave one out")
     if uff:

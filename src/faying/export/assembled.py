@@ -8,7 +8,6 @@ import numpy as np
 
 from faying.case.case import build
 from faying.decks.matrices import read_pair
-from faying.errors import ReadError
 from faying.files import together, write_arrays, write_text
 from faying.joint.support_check import checked_preload
 from faying.study.study import Study
@@ -49,22 +48,10 @@ class Assembled:
         )
 
     @classmethod
-    def of_files(
-        cls, stiffness: Path, mass: Path | None, *, stiffness_unit: str, mass_unit: str, points: Path | None = None
-    ) -> "Assembled":
-        """Read matrices of any program; see `faying.decks.matrices.read_pair`.
-
-        points: text with x y z [m] of each node, whose three unknowns follow each other.
-        """
+    def of_files(cls, stiffness: Path, mass: Path | None, *, stiffness_unit: str, mass_unit: str) -> "Assembled":
+        """Read matrices of any program; see `faying.decks.matrices.read_pair`."""
         K, M, dofs = read_pair(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
-        return cls(
-            stiffness=K,
-            mass=M,
-            dofs=dofs,
-            shift_frequency=typical_frequency(K, M),
-            source=stiffness.name,
-            points=None if points is None else _points(points, K.shape[0]),
-        )
+        return cls(stiffness=K, mass=M, dofs=dofs, shift_frequency=typical_frequency(K, M), source=stiffness.name)
 
     def write(self, folder: Path) -> list[Path]:
         """Write stiffness.npz, mass.npz (SciPy), dofs.txt and where known points.txt, all or none of them."""
@@ -83,22 +70,6 @@ class Assembled:
                 text = "".join(f"{x:.17g} {y:.17g} {z:.17g}\n" for x, y, z in self.points.tolist())
                 out.append(write_text(hidden / "points.txt", text))
         return [folder / file.name for file in out]
-
-
-def _points(path: Path, unknowns: int) -> Array:
-    """Coordinates (n / 3, 3) [m] of the nodes, from text. Raises ReadError where the file is none of n / 3 nodes."""
-    if not path.is_file():
-        raise ReadError(f"no file {path}")
-    try:
-        found = np.loadtxt(path, ndmin=2)
-    except ValueError as fault:
-        raise ReadError(f"{path} should have x y z [m] of a node in each line ({fault})") from None
-    if 3 * len(found) != unknowns or found.shape[1:] != (3,) or not np.all(np.isfinite(found)):
-        raise ReadError(
-            f"{path} has {len(found)} rows of {found.shape[1]} for {unknowns} unknowns; each node has a row x y z [m] "
-            "and three unknowns that follow each other"
-        )
-    return found
 
 
 def typical_frequency(stiffness: Any, mass: Any) -> float:

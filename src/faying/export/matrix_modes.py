@@ -58,7 +58,6 @@ class MatrixModes(Summary):
             "unknowns": len(self.shapes),
             "solver": self.solver,
             "factor_memory": {"unit": "B", "value": self.factor_memory},
-            "processes": 1,
             "missed": self.missed,
             "mass": {"unit": "kg", "values": self.mass.tolist()},
             "frequencies": {"unit": "Hz", "values": self.frequencies.tolist()},

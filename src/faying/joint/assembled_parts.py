@@ -17,7 +17,6 @@ from faying.fe.tied import tie_stiffness
 from faying.fe.vertices import VertexRestriction
 from faying.joint.attachments import PointMass, Support
 from faying.memory import available
-from faying.mpi.over_mpi import OverMpi, processes_named
 from faying.numerics.by_parts import PartByPart
 from faying.numerics.constraint import constrain, free_motions
 from faying.numerics.memory import in_single
@@ -170,21 +169,6 @@ class AssembledParts:
         pulled = np.flatnonzero(np.any(self.loads != 0, axis=1))
         touched = np.union1d(np.union1d(unknowns_of(nodes), pulled), self.fixed)
         return PartByPart([unknowns_of(mesh.body_nodes(body)) for body in mesh.bodies], touched, self._motions)
-
-    def over_mpi(self, name: str) -> OverMpi:
-        """What solves with the matrices of the structure over processes, by a name as `processes_named` takes it.
-
-        The processes serve all laws and loads.
-        """
-        processes = processes_named(name)
-        found = self._over_mpi.get(processes)
-        if found is None:
-            found = self._over_mpi[processes] = OverMpi(self.mesh.points, processes)
-        return found
-
-    @cached_property
-    def _over_mpi(self) -> dict[int, OverMpi]:
-        return {}
 
     def unjoined_motions(self) -> Array:
         """Motions (unknowns, r) of the bodies, each rigid by itself, that nothing resists with all joints apart."""

@@ -30,7 +30,7 @@ from faying.materials import STIFFEST, Material, material_of
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.numerics.constraint import constrain
-from faying.numerics.solve import BY_PARTS, Factoriser, chosen, is_mpi
+from faying.numerics.solve import BY_PARTS, Factoriser, chosen
 from faying.style import Summary
 from faying.text import listed, notes_row, titled
 from faying.typing import Array, Index
@@ -232,8 +232,6 @@ class BoltedStructure(Summary):
             InputError: there is no such solver here.
         """
         way = chosen(name)
-        if is_mpi(way):
-            return self._assembled.over_mpi(way)
         if len(self.mesh.bodies) < 2 or way not in ("pardiso", BY_PARTS):
             return way
         if way == "pardiso" and (name or not self._assembled.is_large):
@@ -331,19 +329,17 @@ class BoltedStructure(Summary):
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
         pairs = [(joint.interface, joint.law) for joint in self.joints]
-        way = self.solver(solver)
         problem = PreloadProblem(
             self.supported_stiffness,
             self.matrices[1],
             self.rigid,
             pairs,
             shift_frequency=self.shift_frequency,
-            solver=way,
+            solver=self.solver(solver),
             friction=[joint.friction for joint in self.joints],
             fixed=self.fixed,
         )
-        if not (isinstance(way, Factoriser) and way.cheap):
-            problem.vertices = self._assembled.vertices
+        problem.vertices = self._assembled.vertices
         return problem
 
     def coupled(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> tuple[Any, Any]:

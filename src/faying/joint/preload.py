@@ -1,8 +1,7 @@
 """From bolt forces to the pressure on the joints, with the full matrices of the parts.
 
 Each Newton step is solved by conjugate gradients preconditioned with one factorisation at a reference state of the
-joints, since only the joint changes; the factorisation is renewed when it has aged. Where it costs no more than a few
-solutions (multigrid over MPI), each Newton step takes its own.
+joints, since only the joint changes; the factorisation is renewed when it has aged.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,7 +21,6 @@ from faying.numerics.solve import Factorisation, Factoriser
 from faying.typing import Array, Index
 
 AGED = 40  # conjugate-gradient steps after which a new factorisation is cheaper: one step costs a fiftieth of it
-CHEAP = 3  # the same where a factorisation costs no more than a few solutions
 
 # a tangent factorisation takes one or two steps a decade, and Newton has some fifteen decades in all before it once the
 # faces lie about where they end up: between these decades of imbalance, above this rate, a new one pays
@@ -63,7 +61,6 @@ class PreloadProblem(Equilibrium):
     ) -> None:
         super().__init__(stiffness, joints, friction=friction)
         self.solver = solver
-        self._cheap = isinstance(solver, Factoriser) and solver.cheap
         self.fixed = np.zeros(0, dtype=np.int64) if fixed is None else fixed
         self.shift_frequency = shift_frequency
         self.mass = mass
@@ -101,13 +98,12 @@ class PreloadProblem(Equilibrium):
         push = self._admissible(push)
         if self.factor is not None:  # of a like state, taken from elsewhere
             parts = Shifted(stiffness=self.stiffness, mass=self._mass, shift=self._shift)
-            limit = CHEAP if self._cheap else AGED
 
             def product(x: Array) -> Array:  # the sum of the matrices takes as long as several
                 return self._clear_fixed(sum((one @ x for one in springs), parts @ x))
 
-            found, count = self._gradients(product, push, ROUGH, limit=limit)
-            if count < limit:
+            found, count = self._gradients(product, push, ROUGH)
+            if count < AGED:
                 return found
         self._factorise(springs, laid if guess.near else None)
         return self._near(push)
@@ -189,8 +185,6 @@ class PreloadProblem(Equilibrium):
 
     def _refactorisation_pays(self, force: Array) -> bool:
         """Whether a new factorisation costs less than the conjugate-gradient steps that the old one still asks for."""
-        if self._cheap:
-            return True
         left = np.log10(float(np.linalg.norm(force)) / self._scale)  # decades of imbalance, below 0
         return bool(LATE < left < EARLY and self._rate > SLOW)
 

@@ -22,7 +22,6 @@ from faying.numerics.modal_reanalysis import ModalReanalysis, near_factor, refin
 from faying.numerics.modes import Modes, lowest_modes
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
-from faying.numerics.solve import Factoriser
 from faying.typing import Array
 
 RANGE_ERROR = 1e-4  # of the squared frequencies at the ends of a range, which no digit of a law's range asks for
@@ -144,18 +143,16 @@ def modes_with(
     count: int | None = None,
     *,
     rigid: Array | None = None,
-    solver: str | Factoriser | None = None,
 ) -> Modes:
     """Real modes of any stiffness [N/m] and mass [kg], by the solver and the shift of a problem.
 
     count: those of the problem where None, its spare ones to no tolerance. rigid: the motions (n, r) that the stiffness
-    leaves free, with which a factorisation in single precision will do; None where they are not known. solver: in place
-    of that of the problem.
+    leaves free, with which a factorisation in single precision will do; None where they are not known.
     """
     spare = SPARE_MODES if count is None else 0
     count = count or problem.mode_count
     check_modes(count, stiffness.shape[0])
-    frequency, solver = problem.shift_frequency, solver or problem.structure.solver(problem.choice.solver)
+    frequency, solver = problem.shift_frequency, problem.structure.solver(problem.choice.solver)
     if rigid is None:
         return lowest_modes(stiffness, mass, count, shift_frequency=frequency, solver=problem.choice.solver)
     return refined_modes(stiffness, mass, count, rigid=rigid, shift_frequency=frequency, solver=solver, spare=spare)

@@ -49,7 +49,6 @@ class PartByPart:
 
     name = NAME
     key = BY_PARTS
-    cheap = False
 
     def __init__(
         self,

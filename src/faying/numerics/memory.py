@@ -27,10 +27,7 @@ def check(needed: float, unknowns: int, solver: str) -> None:
     free = available()
     if free is None or needed <= free:
         return
-    advice = [
-        "a coarser mesh (memory grows as the power 4/3 of the unknowns)",
-        "--mpi PROCESSES of faying run and faying modes, whose memory grows with the unknowns alone",
-    ]
+    advice = ["a coarser mesh (memory grows as the power 4/3 of the unknowns)"]
     if solver != "PARDISO":
         advice.insert(0, "PARDISO, which needs less (add --extra pardiso to uv run, or pip install pypardiso)")
     raise InputError(

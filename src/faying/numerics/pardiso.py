@@ -88,7 +88,7 @@ class Pardiso:
         rows = np.repeat(np.arange(len(blocks.indptr) - 1, dtype=np.int32), np.diff(blocks.indptr))
         self._upper = blocks.indices >= rows
         if self._upper.sum() * self._block**2 > np.iinfo(np.int32).max:
-            raise InputError("the matrix has more than 2^31 entries; use faying modes --mpi PROCESSES")
+            raise InputError("the matrix has more than 2^31 entries; take a coarser mesh")
         counts = np.bincount(rows[self._upper], minlength=len(blocks.indptr) - 1)
         self._starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
         self._columns = blocks.indices[self._upper].astype(np.int32)
@@ -171,10 +171,7 @@ class Pardiso:
             ctypes.byref(fault),
         )
         if fault.value == -2:
-            raise InputError(
-                f"PARDISO ran out of memory on {self._size:,} unknowns; take a coarser mesh, or faying modes "
-                "--mpi PROCESSES"
-            )
+            raise InputError(f"PARDISO ran out of memory on {self._size:,} unknowns; take a coarser mesh")
         if fault.value in SINGULAR:
             raise NotConverged(
                 "PARDISO could not factorise the matrix: it is not positive definite; is a part free to move?"

@@ -26,13 +26,9 @@ class Factorisation(Protocol):
 
 @runtime_checkable
 class Factoriser(Protocol):
-    """Factorises the matrices of one structure, or does what stands for it.
-
-    key: what results call it; cheap: whether to factorise costs no more than a few solutions.
-    """
+    """Factorises the matrices of one structure; key: what results call it."""
 
     key: str
-    cheap: bool
 
     def factorise(self, matrix: Any, *, single: bool) -> Factorisation:
         """Factorise a symmetric positive definite `Shifted` (n, n) to single or to double precision."""
@@ -144,7 +140,6 @@ class _SuperLU:
 
 _MODULE = {"pardiso": "pypardiso", "mumps": "mumps", "cholmod": "sksparse.cholmod", "superlu": "scipy"}
 BY_PARTS = "pardiso-by-parts"  # a way to use PARDISO on structures; as a whole where there are no parts
-MPI = "mpi"  # or mpi:PROCESSES, a way to solve with structures; it factorises nothing
 _BACKENDS: dict[str, Callable[[Any], Repeatable]] = {
     "pardiso": Pardiso,
     BY_PARTS: Pardiso,
@@ -192,7 +187,7 @@ def chosen(name: str | None = None) -> str:
     have = available()
     if asked is None:
         return have[0]
-    if (asked == BY_PARTS and "pardiso" in have) or is_mpi(asked):
+    if asked == BY_PARTS and "pardiso" in have:
         return asked
     if asked not in have:
         raise InputError(
@@ -202,23 +197,9 @@ def chosen(name: str | None = None) -> str:
     return asked
 
 
-def is_mpi(name: str) -> bool:
-    """Whether the name of a solver means processes of mpiexec."""
-    return name.split(":")[0] == MPI
-
-
 def factorise(matrix: Any, name: str | None = None) -> Repeatable:
-    """Factorise a sparse symmetric positive definite matrix.
-
-    Raises NotConverged where it is singular, InputError for a solver that factorises nothing.
-    """
-    way = chosen(name)
-    if is_mpi(way):
-        raise InputError(
-            f"this asks for a factorisation, which the solver {way!r} does not have; give another, such as "
-            f"{available()[0]!r}, or none"
-        )
-    return _BACKENDS[way](matrix)
+    """Factorise a sparse symmetric positive definite matrix. Raises NotConverged where it is singular."""
+    return _BACKENDS[chosen(name)](matrix)
 
 
 def conjugate_gradients(

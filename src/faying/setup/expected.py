@@ -8,7 +8,7 @@ import numpy as np
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
 from faying.geometry.geometry import ELEMENTS, GRADING, UNKNOWNS
 from faying.numerics.memory import guessed, in_single
-from faying.numerics.solve import BY_PARTS, chosen, is_mpi
+from faying.numerics.solve import BY_PARTS, chosen
 from faying.study.study import Study
 
 SEGMENTS = 2.0  # elements along a radius of curvature, as the mesher is told
@@ -21,7 +21,6 @@ SOLID = 0.7  # of that: what the joints under head and nut take where a bolt is 
 SHAKEN = 7.0  # CPU seconds of a vibration at one preload (the bracket on a shaker: 6 to 12)
 CURVE = 13.0  # CPU seconds of a curve over amplitude (docs/backbone.md)
 BARE, VECTORS = 0.13e9, 24e3  # B: of any run, and for each unknown, with PARDISO's factor in single precision
-OVER_MPI = 11e3  # B for each unknown that the processes of mpiexec take (docs/speed.md)
 ESTIMATED = "the unknowns are estimated from volume, size and curved faces, within a factor of 2.5"
 COUNTED = "the unknowns are those of the mesh"
 BASIS = (
@@ -61,11 +60,8 @@ class Expected:
             seconds += CURVE * len(study.loads) * max(len(study.backbone.laws), 1)
         seconds += SHAKEN * len(study.loads) * len(study.vibrations)
         way = chosen(study.modes.solver)
-        if is_mpi(way):
-            memory = OVER_MPI * unknowns
-        else:
-            memory = memory_of_run(unknowns)
-            memory += 0.0 if way in ("pardiso", BY_PARTS) else guessed(unknowns) - in_single(unknowns)
+        memory = memory_of_run(unknowns)
+        memory += 0.0 if way in ("pardiso", BY_PARTS) else guessed(unknowns) - in_single(unknowns)
         basis = f"{COUNTED if counted else ESTIMATED}; {BASIS}"
         return cls(unknowns=unknowns, memory=memory, seconds=seconds, basis=basis)
 

@@ -81,8 +81,7 @@ MODES: Declared = {
         ("hysteretic", "viscous"),
     ),
     "solver": Key.text(
-        'Factorisation; the fastest one found where left out. "mpi" is none, but multigrid over as many processes as '
-        "FAYING_MPI_PROCESSES says, else as there are cores.",
+        "Factorisation; the fastest one found where left out.",
         None,
         SOLVERS,
     ),
