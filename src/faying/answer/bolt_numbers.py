@@ -17,7 +17,6 @@ from faying.joint.load_path import Cut, LoadPaths
 from faying.joint.strength import least_seat_area, seat_limit
 from faying.joint.structure import Structure
 from faying.materials import ContactPair
-from faying.numerics.changed import UpdatedStiffness
 from faying.result.bolts import BoltNumbers
 from faying.study.keys.surface import Surface
 from faying.surface.roughness import mean_peak_to_valley
@@ -67,7 +66,7 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
 
 
 def _clamped(structure: Structure, state: LoadedCase, before: Sequence[Clamping]) -> Clamping:
-    stiffness = UpdatedStiffness(before=structure.dynamic_matrices[0], change=structure.joint_stiffness(state.springs))
+    stiffness, _ = structure.coupled(state.springs)
     like = np.concatenate([one.motions for one in before], axis=1) if before else None
     return clamping(structure, stiffness, state.modes, state.springs, like=like)
 

@@ -10,7 +10,6 @@ from faying.joint.attachments import nearest_node
 from faying.joint.structure import Structure
 from faying.measured.model import FullResponse
 from faying.notes import Note
-from faying.numerics.changed import assembled
 from faying.numerics.constraint import constrain
 from faying.numerics.damped import DampedModes
 from faying.numerics.modes import Modes
@@ -96,7 +95,7 @@ class LoadedStructure:
         spec = self.study.response
         eta = 0.0 if spec is None else spec.structural_loss
         vibration = ForcedVibration(
-            stiffness=assembled(self.stiffness),
+            stiffness=self.stiffness,
             mass=self.mass,
             loss=self.loss,
             rigid=self.structure.rigid_count,

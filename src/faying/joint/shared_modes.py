@@ -14,7 +14,6 @@ from faying.joint.preload import PreloadProblem
 from faying.joint.preload_case import PreloadCase
 from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions, checked_preload
-from faying.numerics.changed import UpdatedStiffness, assembled
 from faying.numerics.constraint import constrain
 from faying.numerics.damped import damped_near
 from faying.numerics.memory import check_modes
@@ -54,7 +53,6 @@ class SharedModes:
 
     def __init__(self) -> None:
         self.near: ModalReanalysis | None = None  # where the modes were found last
-        self._joint_stiffness: Any = None  # stiffness [N/m] of the springs in that of its basis
 
     def begin(self, problem: ModalProblem, preload: PreloadProblem) -> None:
         """Take the factorisation of a preload where its springs are near to those that it led to, if none is at hand.
@@ -69,8 +67,7 @@ class SharedModes:
             constrain(j.interface.springs(*k), structure.fixed, 0.0)
             for j, k in zip(structure.joints, preload.factorised_springs, strict=True)
         ]
-        joint_stiffness = added(None, laid)
-        stiffness, mass = added(structure.dynamic_matrices[0], [joint_stiffness]), structure.dynamic_matrices[1]
+        stiffness, mass = added(structure.dynamic_matrices[0], laid), structure.dynamic_matrices[1]
         check_modes(problem.mode_count, stiffness.shape[0])
         self.near = near_factor(
             factor,
@@ -82,7 +79,6 @@ class SharedModes:
             spare=SPARE_MODES,
             most=_most(problem),
         )
-        self._joint_stiffness = joint_stiffness
 
     def of(
         self,
@@ -92,29 +88,24 @@ class SharedModes:
         tolerance: float = EXACT,
         shapes: bool = True,
     ) -> tuple[Modes, Any]:
-        """Real modes, and the stiffness [N/m] that they belong to, which may be a `UpdatedStiffness` one.
+        """Real modes, and the stiffness [N/m] that they belong to.
 
         tolerance: of the squared frequencies, relative; shapes: False where only these are wanted.
         """
         structure = problem.structure
-        joint_stiffness = structure.joint_stiffness(springs)
+        parts, mass = structure.dynamic_matrices
+        stiffness = added(parts, [structure.joint_stiffness(springs)])
         if self.near is not None:
-            # the sum with the parts would take longer than the modes where the basis has them
-            stiffness = UpdatedStiffness(
-                before=self.near.span.stiffness, change=joint_stiffness - self._joint_stiffness
-            )
             try:
                 return self._from_near(problem, stiffness, tolerance, shapes), stiffness
             except NotConverged:
-                self._factorise(problem, assembled(stiffness))
+                self._factorise(problem, stiffness)
             try:
                 return self._from_near(problem, stiffness, tolerance, shapes), stiffness
             except NotConverged:
                 self.near = None  # before the next factorisation: one at a time in memory
-        stiffness, mass = added(structure.dynamic_matrices[0], [joint_stiffness]), structure.dynamic_matrices[1]
         modes = modes_with(problem, stiffness, mass, rigid=structure.rigid)
         self.near = ModalReanalysis(modes, stiffness, mass, rigid=problem.rigid_count, most=_most(problem))
-        self._joint_stiffness = joint_stiffness
         return modes, stiffness
 
     def _from_near(self, problem: ModalProblem, stiffness: Any, tolerance: float, shapes: bool) -> Modes:

@@ -29,7 +29,6 @@ from faying.loads.remarks import load_notes
 from faying.loads.statics import LoadedState, LoadStatics
 from faying.measured.mac import Weighted
 from faying.notes import Note
-from faying.numerics.changed import UpdatedStiffness
 from faying.numerics.follow import partners
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
@@ -166,9 +165,7 @@ def statics_of(base: Preloaded) -> LoadStatics:
         for joint, s in zip(structure.joints, base.springs, strict=True)
     ]
     return LoadStatics(
-        stiffness=UpdatedStiffness(
-            before=structure.dynamic_matrices[0], change=structure.joint_stiffness(base.springs)
-        ),
+        stiffness=structure.coupled(base.springs)[0],
         factor=base.factor,
         elastic_forces=structure.elastic_forces,
         joints=pairs,

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.numerics.changed import UpdatedStiffness, assembled
 from faying.numerics.modes import Modes, lowest_modes
 from faying.numerics.product import combined, product
 from faying.numerics.shifted import Shifted
@@ -181,13 +180,11 @@ class ModalReanalysis:
     def _change(self, stiffness: Any) -> tuple[Any, Index]:
         """What a stiffness has beyond that of the basis: (k, k) on the unknowns that differ, and these (k,)."""
         before = self.span.stiffness
-        if isinstance(stiffness, UpdatedStiffness) and stiffness.before is before:
-            return stiffness.small, stiffness.touched
         if self._changed is None or self._changed[0] is not stiffness:
             if stiffness is before:  # the difference would take the room of both
                 self._changed = stiffness, stiffness[:0, :0], np.zeros(0, dtype=np.int64)
             else:
-                change = (assembled(stiffness) - before).tocsr()
+                change = (stiffness - before).tocsr()
                 change.eliminate_zeros()
                 touched = np.flatnonzero(np.diff(change.indptr))
                 self._changed = stiffness, change[touched][:, touched], touched
