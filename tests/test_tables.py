@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from faying import columns as tables
 from faying.columns import read_columns, read_numbers
 from faying.errors import InputError, ReadError
+from faying.export import attach
 from faying.measured.mapping import read_points
-from faying.study import pressure
 
 FORM = "three numbers are due"
 NUMBER = st.one_of(st.floats(-1e300, 1e300).map(repr), st.integers(-999, 999).map(str))
@@ -67,7 +67,7 @@ def test_rows_of_a_record_keep_their_values_and_lines(tmp_path):
     [
         lambda path: read_numbers(path, 2, FORM),
         lambda path: read_columns(path, {"node": "", "pressure": "Pa"}, needed="pressure", form=FORM),
-        pressure._table,
+        attach._table,
         read_points,
     ],
 )

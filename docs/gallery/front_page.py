@@ -19,7 +19,7 @@ import faying
 from faying.fe.figure import draw_shape_flat
 from faying.result import Result
 from faying.result.figure import face_map
-from faying.result.level_figure import damping_of
+from faying.result.interval_figure import damping_of
 from faying.style import COLOURS, SOFT, WIDE, drawing, new_figure, save
 from faying.units import load_text
 

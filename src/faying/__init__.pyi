@@ -23,13 +23,13 @@ from .errors import InputError as InputError
 from .errors import NotConverged as NotConverged
 from .errors import ReadError as ReadError
 from .export.attach import attach as attach
-from .export.bare import modes_with_joint as modes_with_joint
 from .export.condense import condense as condense
 from .export.matrix_modes import MatrixModes as MatrixModes
 from .export.matrix_modes import matrix_modes as matrix_modes
+from .export.matrix_modes import modes_with_joint as modes_with_joint
 from .fe.mesh import Mesh as Mesh
 from .form.fit import fit_form as fit_form
-from .form.flatness import minimum_zone as minimum_zone
+from .form.fit import minimum_zone as minimum_zone
 from .form.form import Form as Form
 from .form.gap_map import FaceMap as FaceMap
 from .form.gap_map import GapMap as GapMap
@@ -63,7 +63,7 @@ from .measured.ring_down import ring_down_of_frf as ring_down_of_frf
 from .measured.uff import read_uff as read_uff
 from .measured.uff_write import write_uff as write_uff
 from .output.report import write_report as write_report
-from .output.scene.notebook import view as view
+from .output.scene.pages import view as view
 from .result import Result as Result
 from .result import read_model_modes as read_model_modes
 from .result.backbone import Backbone as Backbone
@@ -72,7 +72,7 @@ from .result.difference import compare_runs as compare_runs
 from .result.vibration import VibrationResponse as VibrationResponse
 from .service.vibration import vibration as vibration
 from .setup.check import check as check
-from .setup.faces import faces as faces
+from .setup.face_names import faces as faces
 from .setup.new import new_study as new_study
 from .sheet.bolt_sheet import bolt_sheet as bolt_sheet
 from .study import Study as Study

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.answer.interval import _laws, intervals
-from faying.answer.wave_band import Draws
+from faying.answer.interval import Draws, _laws, intervals
 from faying.case.bounds import bounds
 from faying.case.case import Case, Progress
 from faying.case.changed import ChangedCase, frequencies_of

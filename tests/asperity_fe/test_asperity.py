@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from faying import RIGID, ContactPair, InputError, Material, NotConverged, solve_asperity
-from faying.asperity_fe.element import Quads
+from faying.asperity_fe.body import Quads
 from faying.asperity_fe.plasticity import equivalent
 from faying.contact.asperity.jackson_green import JacksonGreen
 from faying.contact.asperity.kogut_etsion import KogutEtsion

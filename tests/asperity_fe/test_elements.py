@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from faying.asperity_fe.body import Body, CapState
-from faying.asperity_fe.element import Quads
-from faying.asperity_fe.far import FarField, shared
+from faying.asperity_fe.body import Body, CapState, Quads
 from faying.asperity_fe.mesh import cap_mesh
+from faying.asperity_fe.model import FarField, shared
 from faying.asperity_fe.plasticity import Flow, equivalent, return_map
 from faying.errors import InputError
 from faying.materials import Material

@@ -7,9 +7,8 @@ import pytest
 
 import faying
 from faying.bolt.bolt import Bolt, Washer
-from faying.bolt.compliance import bolt_sections
-from faying.bolt.standards import METRIC
-from faying.bolt.threads import Fastener, Thread
+from faying.bolt.threads import METRIC, Fastener, Thread
+from faying.bolt.vdi2230 import bolt_sections
 from tests.helpers.plates import stacked
 
 E = 210e9

@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 
 import faying
-from faying.bolt.standards import COMMON, METRIC, PINS, metric, nearest_size
+from faying.bolt.threads import COMMON, METRIC, PINS, metric, nearest_size
 
 
 def test_a_washer_lies_under_its_head_and_over_its_hole():

@@ -4,9 +4,8 @@ from math import pi
 
 import pytest
 
-from faying.bolt.compliance import bolt_sections
 from faying.bolt.threads import Thread
-from faying.bolt.vdi2230 import cone_angle, cone_compliance
+from faying.bolt.vdi2230 import bolt_sections, cone_angle, cone_compliance
 
 NOTES = (
     "worked example and exercises 1 and 2, public notes to the lecture Bauelemente der Luftfahrzeuge (V5.0.16), 9.11"

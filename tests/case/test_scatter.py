@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.answer.interval import _preload_factors
-from faying.answer.wave_band import Draws
+from faying.answer.interval import Draws, _preload_factors
 from faying.case.case import Case
 from faying.case.level_damping import REST
 from faying.case.scatter import SCORE, default, discrepancy, force_factors, mode_sd, structure_sd, with_assumed

@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 import faying
-from faying.decks.deck import CondensedDeck
+from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
 from faying.decks.programs import CONDENSED, module_of
-from faying.decks.system import UnitSystem
-from faying.decks.write import write_condensed
-from faying.export.condensed import carried
+from faying.export.condense import carried
 
 NODES = (7, 12)
 

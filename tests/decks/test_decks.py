@@ -10,9 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 import faying
 from faying.decks import abaqus, aster, calculix, mapdl, nastran
-from faying.decks.deck import real, springs_of
-from faying.decks.system import UnitSystem
-from faying.decks.write import SOLVERS, write
+from faying.decks.deck import SOLVERS, UnitSystem, real, springs_of, write
 from tests.helpers import readers
 from tests.helpers.models import K_N, K_T, LOSS_N, deck_of, two
 

@@ -9,8 +9,8 @@ import pytest
 import faying
 from faying.decks.bulk import number
 from faying.fe.elasticity import assemble
-from faying.fe.faces import face_centre
 from faying.fe.interface import join
+from faying.fe.sides import face_centre
 from tests.helpers import meshfiles
 from tests.helpers.boxes import SOLID_KINDS, row
 

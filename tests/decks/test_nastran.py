@@ -7,7 +7,7 @@ import faying
 from faying.decks.nastran import card
 from faying.decks.raw import UPRIGHT_FIRST
 from faying.fe.elements import KINDS
-from faying.fe.faces import face_centre
+from faying.fe.sides import face_centre
 from tests.decks.test_meshfile import same, two, written
 from tests.helpers import meshfiles
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from faying.case.case import build, checked_mesh
-from faying.fe.faces import face_centre
+from faying.fe.sides import face_centre
 from faying.joint.modal import ModesChoice
 from faying.joint.tighten import tighten
 from faying.study import Study

@@ -138,7 +138,7 @@ def test_frequencies_are_those_of_a_study(tmp_path):
     mmwrite(tmp_path / "M.mtx", M * 1e-3)
     n = meshfiles.numbers(mesh)
     (tmp_path / "dofs").write_text("\n".join(f"{i} {c}" for i in n for c in (1, 2, 3)) + "\n")
-    from faying.export.bare import modes_with_joint
+    from faying.export.matrix_modes import modes_with_joint
 
     made = attach(file, FACES, unit="mm", study=study, pressure="solve", preload="3 kN", coupling="faces")
     found, rigid = modes_with_joint(
@@ -371,7 +371,7 @@ def test_matrices_half_held(tmp_path):
         K[i, i] += 1e9
     mmwrite(tmp_path / "K.mtx", K.tocsr()), mmwrite(tmp_path / "M.mtx", M)
     (tmp_path / "dofs").write_text("\n".join(f"{i}.{c}" for i in meshfiles.numbers(mesh) for c in (1, 2, 3)) + "\n")
-    from faying.export.bare import modes_with_joint
+    from faying.export.matrix_modes import modes_with_joint
 
     made = attach(file, FACES, unit="mm", study=study, pressure="5 MPa")
     with pytest.raises(faying.InputError, match="leave 3 of the six rigid motions free"):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.export.condensed import CondensedJoint, carried, condensed_modes
+from faying.export.condense import CondensedJoint, carried, condensed_modes
 from faying.fe.interface import join
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint

@@ -8,10 +8,9 @@ import pytest
 import faying
 from faying.fe.elasticity import assemble, element_mass, element_stiffness, rigid_motions
 from faying.fe.elements import KINDS, SOLIDS
-from faying.fe.faces import face_centre
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
-from faying.fe.sides import all_sides, nodes_of, skin
+from faying.fe.sides import all_sides, face_centre, nodes_of, skin
 from faying.fe.solids import least_jacobian
 from faying.joint.bolted import bond
 from faying.numerics.modes import lowest_modes

@@ -6,9 +6,8 @@ import re
 import pytest
 
 import faying
-from faying.geometry.cad import files_of, kernel, read_parts
+from faying.geometry.cad import decoded, files_of, kernel, read_parts, read_products
 from faying.geometry.geometry import mesh_step
-from faying.geometry.products import decoded, read_products
 from faying.geometry.selectors import Selector
 
 
@@ -188,7 +187,7 @@ def test_an_entity_may_hold_comments_and_brackets_in_its_texts():
 
 
 def area_of(mesh, name):
-    from faying.fe.faces import face_centre
+    from faying.fe.sides import face_centre
 
     return face_centre(mesh.points, mesh.face(name))[2]
 

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from faying.fe.bonded import bonded_mesh
+from faying.fe.bonded import bonded_mesh, tie_stiffness
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.mesh import Mesh
 from faying.fe.sides import sides_on
-from faying.fe.tied import tie_stiffness
 from faying.materials import CATALOGUE
 from tests.fe.test_overlap import PAIRS, ring
 from tests.helpers.boxes import row

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import faying
 from faying.cli import main
 from faying.form.face_axes import FaceAxes
-from faying.form.flatness import minimum_zone
+from faying.form.fit import minimum_zone
 from faying.form.form import Form, random_depth
 from faying.form.gap_map import FaceMap, GapMap, read_heights
 from tests.helpers.plates import plates, stacked

@@ -13,8 +13,7 @@ from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
-from faying.form.machining import ASSUMED, ASSUMED_GAP, GAUSSIAN, PROCESSES
-from faying.form.waviness import LaidWaves, ScanWaves, Waves, Waviness
+from faying.form.waviness import ASSUMED, ASSUMED_GAP, GAUSSIAN, PROCESSES, LaidWaves, ScanWaves, Waves, Waviness
 from tests.helpers.plates import plates, stacked
 
 FACES = ("low.top", "high.bottom")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.fe.faces import face_centre
+from faying.fe.sides import face_centre
 from faying.geometry.geometry import mesh_step
 from faying.geometry.selectors import Selector
 

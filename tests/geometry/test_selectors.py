@@ -3,7 +3,7 @@
 import pytest
 
 import faying
-from faying.fe.faces import face_centre
+from faying.fe.sides import face_centre
 from faying.geometry.face_facts import read_facts
 from faying.geometry.geometry import mesh_step
 from faying.geometry.selectors import Selector, chosen, points_of

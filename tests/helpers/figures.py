@@ -12,7 +12,7 @@ import faying
 from faying.asperity_fe.drive import AsperityCase
 from faying.contact.figure import curves as law_curves
 from faying.distribution import Distribution
-from faying.form.figure import figure as form
+from faying.form.fit import figure as form
 from faying.form.fit import fit_form
 from faying.halfspace import figure as half_space
 from faying.identify import prediction as predicting
@@ -33,7 +33,7 @@ from faying.measured.modes import ModeSet
 from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
 from faying.output.figures import asperity, sweep
-from faying.result import Receptance, backbone, difference_figure, vibration
+from faying.result import Receptance, backbone, difference, vibration
 from faying.result.backbone import QuasiStaticCheck
 from faying.result.difference import compare_runs
 from faying.result.interval import Interval
@@ -424,7 +424,7 @@ FIGURES = {
         [shaken(load, name) for load in (5e3, 8e3) for name in ("shaker", "transport by road")]
     ),
     "answer/level_curves.py:plot": lambda: whole(level_curves().plot()),
-    "result/difference_figure.py:differences": lambda: difference_figure.differences(
+    "result/difference.py:differences": lambda: difference.differences(
         compare_runs(result(), two_boxes(names=("flange_1",)))
     ),
     "loads/figure.py:figure": lambda: load_cases_figure.figure(made_cases()),
@@ -432,7 +432,7 @@ FIGURES = {
     "joint/figure.py:pressure_axes": lambda: whole(state().plot_pressure()),
     "joint/figure.py:structure_axes": lambda: whole(state().structure.plot()),
     "joint/figure.py:mode_axes": lambda: whole(state().modes.plot(1)),
-    "form/figure.py:figure": form_map,
+    "form/fit.py:figure": form_map,
     "fe/figure.py:mesh_axes": lambda: whole(stacked().plot()),
     "contact/figure.py:curves": laws,
     "contact/law_figure.py:law_plot": lambda: whole(LAW.plot()),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from faying.bolt.bolt import Bolt
-from faying.fe.faces import sampled
+from faying.fe.sides import sampled
 
 
 def face_load(points, blocks, axis_point, direction):

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from faying.decks.deck import ContactProperty, JointDeck
-from faying.decks.system import UnitSystem
+from faying.decks.deck import ContactProperty, JointDeck, UnitSystem
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
 from faying.joint.pairs import consistent, lumped

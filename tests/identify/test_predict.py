@@ -244,7 +244,7 @@ def test_what_was_cut_is_said(tmp_path):
 
 def test_the_second_degree_of_a_random_form_has_the_flatness_of_its_tolerance():
     """The shapes of [uncertain] flatness: over one face, their mean flatness is two thirds of the tolerance."""
-    from faying.form.flatness import minimum_zone
+    from faying.form.fit import minimum_zone
     from faying.study.keys.uncertain import SHAPE_SD
 
     generator = np.random.default_rng(5)

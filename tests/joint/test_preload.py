@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import faying
-from faying.fe.faces import face_centre
 from faying.fe.interface import join
+from faying.fe.sides import face_centre
 from faying.joint.equilibrium import Equilibrium
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw

@@ -8,7 +8,7 @@ import pytest
 import faying
 from faying.case.case import build
 from faying.cli.main import main
-from faying.fe.faces import face_centre
+from faying.fe.sides import face_centre
 from faying.loads.table import terminal
 from faying.study import Study
 from tests.helpers.studies import write

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from faying.numerics.signs import definite
+from faying.numerics.modes import definite
 
 
 def test_a_shape_and_its_negative_are_one():

@@ -132,7 +132,7 @@ PARTS = {
     "result/figure.py:_faces",
     "measured/figure.py:shapes_side_by_side",
 }
-OF_REPORT = ("result/figure.py", "result/interval_figure.py", "result/level_figure.py", "result/response_figure.py")
+OF_REPORT = ("result/figure.py", "result/interval_figure.py", "result/response_figure.py")
 
 
 def test_no_function_that_draws_escapes():

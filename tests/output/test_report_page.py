@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from faying.output import report
-from faying.output import report_curves as curves
+from faying.output import report as curves
 from faying.result import Provenance, Receptance
 from tests.helpers.backbones import made
 from tests.helpers.browser import opened, until

@@ -121,7 +121,7 @@ def test_compressed_bases_serve_what_they_were_trained_on_and_what_lies_between(
 
 def test_few_variants_leave_the_basis_for_equilibrium_as_it_is():
     """Less than three for two vectors that they need: others need more."""
-    from faying.reduction.needs import for_states
+    from faying.reduction.reduce import for_states
 
     rng = np.random.default_rng(5)
     states = rng.standard_normal((12, 5)) @ rng.standard_normal((5, 40))

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from faying.errors import InputError
-from faying.result.difference import compare_runs, of_joint
-from faying.result.difference_figure import carried
+from faying.result.difference import carried, compare_runs, of_joint
 from tests.helpers.scenes import two_boxes
 
 FIRST = two_boxes()

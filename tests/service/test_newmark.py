@@ -14,8 +14,7 @@ from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
-from faying.microslip.level_basis import level_basis
-from faying.microslip.levels import cut_laws, level_model
+from faying.microslip.levels import cut_laws, level_basis, level_model
 from faying.service.excited import Excited
 from tests.helpers.bars import SIMPLE
 from tests.helpers.boxes import row

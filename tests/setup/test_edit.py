@@ -10,8 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from faying.errors import InputError
-from faying.setup.edit import edited, parsed, written
-from faying.setup.lines import statements
+from faying.setup.edit import edited, parsed, statements, written
 from faying.setup.template import TEXT
 
 STUDY = TEXT.format(name="study.toml", step="two-blocks.step", scan="surface.x3p")

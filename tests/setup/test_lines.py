@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from faying.setup.lines import key_of, line_of, lines_of
+from faying.setup.edit import key_of, line_of, lines_of
 
 TEXT = '''# title = "no"
 title = """several

@@ -7,7 +7,7 @@ import faying
 from faying.bolt.bolt import BoltPlace
 from faying.bolt.vdi2230 import cone_angle
 from faying.geometry.face_triangles import FaceTriangles
-from faying.setup.load_shares import WIDE, load_shares
+from faying.setup.reach import WIDE, load_shares
 
 HOLE, SEAT, LENGTH, DEPTH = 9e-3, 16e-3, 40e-3, 15e-3
 

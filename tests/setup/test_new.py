@@ -9,8 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 import faying
-from faying.bolt.standards import COMMON, METRIC, is_tapped, size_for_hole
-from faying.bolt.threads import Fastener, Thread
+from faying.bolt.threads import COMMON, METRIC, Fastener, Thread, is_tapped, size_for_hole
 from faying.case.case import checked_mesh
 from faying.cli.main import cli
 from faying.geometry.face_facts import PartFacts

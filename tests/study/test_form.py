@@ -10,7 +10,7 @@ from faying.answer.run import run
 from faying.case.case import build
 from faying.case.changed import TOLERANCE
 from faying.form.form import Form
-from faying.form.machining import ASSUMED, GAUSSIAN, PROCESSES
+from faying.form.waviness import ASSUMED, GAUSSIAN, PROCESSES
 from faying.joint.modal import ModesChoice
 from faying.study import Study
 from tests.helpers.preloads import pulled

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from faying import FractalFit, InputError, NotConverged, Scan, fit_fractal
 from faying.surface.convention import cut_factor, implied_Rq
-from faying.surface.estimators.table import ESTIMATORS, METHODS
-from faying.surface.estimators.windows import share_left, window_transfer
+from faying.surface.estimators.table import ESTIMATORS, METHODS, share_left, window_transfer
 from faying.surface.fractal import fit_all
 from faying.surface.fractal_fit import consistency
 from faying.surface.selftest import self_test, stretch_of

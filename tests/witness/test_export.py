@@ -352,7 +352,7 @@ def test_the_t_specimen_in_calculix(tmp_path):
 def test_modes_of_matrices_that_calculix_stores(tmp_path):
     """Bare parts stored by MATRIXSTORAGE, the joint added here: the frequencies of CalculiX with SPRING2."""
     from faying.export.attach import attach
-    from faying.export.bare import modes_with_joint
+    from faying.export.matrix_modes import modes_with_joint
 
     made = two(("hex20", "hex20"), ((2, 2), (2, 2)), counts=(3, 2))
     (tmp_path / "model.inp").write_text(meshfiles.abaqus(made))

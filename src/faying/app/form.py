@@ -10,8 +10,7 @@ from typing import Any, Literal
 
 from faying.contact.build import AUTO, find
 from faying.errors import InputError
-from faying.setup.edit import edited, parsed, written
-from faying.setup.lines import KeyPath, line_of, lines_of, name_of
+from faying.setup.edit import KeyPath, edited, line_of, lines_of, name_of, parsed, written
 from faying.study.declaration.declared import NAME, NUMERAL, REQUIRED, Declared, Inner, Key
 from faying.study.keys.tables import STUDY
 from faying.study.keys.uncertain import OWN, flat

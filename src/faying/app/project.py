@@ -9,7 +9,7 @@ from typing import Any, final, get_args
 from faying.errors import InputError
 from faying.file_kinds import STUDY, Use, kind_held, kind_of, taken
 from faying.files import write_atomically, write_text
-from faying.study.results_folder import results_folder
+from faying.study.study import results_folder
 
 SHOWN: tuple[Use, ...] = ("geometry", "mesh", "scan", "test", "study")  # what the page offers files for
 NAME = re.compile(r"[\w()+\- ][\w.()+\- ]{0,118}", re.ASCII)

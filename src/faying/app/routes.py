@@ -13,13 +13,17 @@ from typing import TYPE_CHECKING, Any
 from faying import __version__
 from faying.app.commands import Job, answer
 from faying.app.project import Project, checked_name
-from faying.app.typed import faults_of
 from faying.errors import FayingError, InputError
 from faying.files import make_folder
+from faying.setup.edit import key_of, line_of, line_of_fault, lines_of
+from faying.study import Study
+from faying.study.declaration.reader import StudyFaults
+from faying.text import toml
 
 if TYPE_CHECKING:
     from faying.app.runs import Runs
     from faying.app.scans import OpenScan
+
 
 OF_SCAN = ("xy-unit", "z-unit", "size", "channel")  # of a request: how a scan is read, as options of commands
 # what may run, with the pictures that it draws for the page
@@ -317,3 +321,28 @@ def answered(session: Session, method: str, path: str, request: Request) -> byte
     except Exception as fault:  # a fault of ours is an answer, too: the page goes on
         words = f"a fault inside Faying ({type(fault).__name__}: {fault}) in {method} {path}; please report it"
         return json.dumps({"fault": words}).encode()
+
+
+def faults_of(text: str, folder: Path) -> list[dict[str, Any]]:
+    """Return the faults of a text, each with its line where that is known; files are not opened, nothing is meshed.
+
+    Args:
+        text: of the study.
+        folder: in which the files lie that it names.
+    """
+    try:
+        data = toml(text)
+    except ValueError as fault:
+        return [_fault(f"the text is not TOML: {fault}", line_of_fault(fault, text))]
+    lines = lines_of(text)
+    try:
+        Study.from_dict(data, folder=folder, text=text)
+    except StudyFaults as faults:
+        return [_fault(line, line_of(key_of(line, lines), lines)) for line in faults.lines]
+    except FayingError as fault:
+        return [_fault(str(fault), None)]
+    return []
+
+
+def _fault(text: str, line: int | None) -> dict[str, Any]:
+    return {"level": "fault", "text": text, "line": line}

@@ -14,8 +14,7 @@ from faying.cache import FOLDER
 from faying.errors import FayingError, InputError
 from faying.files import make_folder, write_atomically
 from faying.result import Result
-from faying.setup.edit import written
-from faying.setup.lines import KeyPath, name_of
+from faying.setup.edit import KeyPath, name_of, written
 from faying.text import toml
 from faying.units import load_text
 
@@ -85,8 +84,7 @@ class Runs:
         Raises:
             InputError: there is no such run or preload, or a run cannot be read.
         """
-        from faying.result.difference import compare_runs, shared_preloads
-        from faying.result.difference_figure import differences
+        from faying.result.difference import compare_runs, differences, shared_preloads
 
         results = self._load(first), self._load(second)
         found = compare_runs(*results, preload or None)

@@ -8,17 +8,17 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from faying.bolt.compliance import HEADS, BoltSection, Head, bolt_sections
 from faying.bolt.tapped import INSIDE, RoundHole, engaged_length, round_hole
 from faying.bolt.threads import THICKEST, THINNEST, Fastener, Thread
+from faying.bolt.vdi2230 import HEADS, BoltSection, Head, bolt_sections
 from faying.checks import number
 from faying.errors import InputError
 from faying.fe.attach import DepthBand, Ring, mean_motion
 from faying.fe.elasticity import Solid
-from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.holes import Hole, holes
 from faying.fe.line import Line, across
 from faying.fe.mesh import Mesh
+from faying.fe.sides import NamedFaces, face_centre
 from faying.materials import material_of
 from faying.misuse import checked_call, shortened
 from faying.notes import Note

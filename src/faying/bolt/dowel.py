@@ -16,10 +16,9 @@ from faying.checks import number
 from faying.errors import InputError
 from faying.fe.elasticity import Solid
 from faying.fe.elements import FACES
-from faying.fe.faces import NamedFaces, sampled
 from faying.fe.line import FACING, Line
 from faying.fe.mesh import Mesh
-from faying.fe.sides import nodes_of
+from faying.fe.sides import NamedFaces, nodes_of, sampled
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
 from faying.typing import Array

@@ -9,8 +9,8 @@ import numpy as np
 
 from faying.bolt.threads import Fastener
 from faying.errors import InputError
-from faying.fe.faces import NamedFaces, face_centre
 from faying.fe.mesh import Mesh
+from faying.fe.sides import NamedFaces, face_centre
 from faying.misuse import checked_call
 from faying.typing import Array, Index
 from faying.units import in_mm

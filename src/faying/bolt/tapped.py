@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.faces import sampled
-from faying.fe.sides import Blocks
+from faying.fe.sides import Blocks, sampled
 from faying.typing import Array
 from faying.units import show
 

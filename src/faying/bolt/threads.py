@@ -1,14 +1,136 @@
-"""Metric threads and property classes of steel bolts: stress area and proof load."""
+"""Metric threads and property classes of steel bolts: stress area and proof load.
+
+Dimensions of metric fasteners by their standards, in one table: threads, holes, heads, washers, pins.
+
+Sources: ISO 261:1998 (coarsest pitch), ISO 273:1979 (clearance holes: fine, medium, coarse), ISO 4014:2011 and
+4017:2014 (hexagon heads: width across flats), ISO 4762:2004 (cap screws: diameter of the head; M18 and M22 by DIN 912),
+ISO 7089:2000 and 7090:2000 (plain washers: inner and outer diameter, thickness), ISO 2338:1997 (parallel pins). A dash
+is where the standard has no such size.
+"""
 
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import isclose, pi
 
 import numpy as np
 
-from faying.bolt.standards import METRIC
 from faying.errors import InputError
 from faying.units import show
+
+# all in mm: thread, pitch; holes; flats; socket head; washer
+_TABLE = """
+1.6 0.35   1.7  1.8  2.0     3.2     3       1.7   4   0.3
+2   0.4    2.2  2.4  2.6     4       3.8     2.2   5   0.3
+2.5 0.45   2.7  2.9  3.1     5       4.5     2.7   6   0.5
+3   0.5    3.2  3.4  3.6     5.5     5.5     3.2   7   0.5
+3.5 0.6    3.7  3.9  4.2     6       -       3.7   8   0.5
+4   0.7    4.3  4.5  4.8     7       7       4.3   9   0.8
+5   0.8    5.3  5.5  5.8     8       8.5     5.3   10  1
+6   1      6.4  6.6  7       10      10      6.4   12  1.6
+7   1      7.4  7.6  8       11      -       -     -   -
+8   1.25   8.4  9    10      13      13      8.4   16  1.6
+10  1.5    10.5 11   12      16      16      10.5  20  2
+12  1.75   13   13.5 14.5    18      18      13    24  2.5
+14  2      15   15.5 16.5    21      21      15    28  2.5
+16  2      17   17.5 18.5    24      24      17    30  3
+18  2.5    19   20   21      27      27      19    34  3
+20  2.5    21   22   24      30      30      21    37  3
+22  2.5    23   24   26      34      33      23    39  3
+24  3      25   26   28      36      36      25    44  4
+27  3      28   30   32      41      -       28    50  4
+30  3.5    31   33   35      46      45      31    56  4
+33  3.5    34   36   38      50      -       34    60  5
+36  4      37   39   42      55      54      37    66  5
+39  4      40   42   45      60      -       42    72  6
+42  4.5    43   45   48      65      63      45    78  8
+45  4.5    46   48   52      70      -       48    85  8
+48  5      50   52   56      75      72      52    92  8
+52  5      54   56   62      80      -       56    98  8
+56  5.5    58   62   66      85      84      62    105 10
+60  5.5    62   66   70      90      -       66    110 10
+64  6      66   70   74      95      96      70    115 10
+68  6      70   74   78      -       -       -     -   -
+72  6      74   78   82      -       -       -     -   -
+76  6      78   82   86      -       -       -     -   -
+80  6      82   86   91      -       -       -     -   -
+85  6      87   91   96      -       -       -     -   -
+90  6      93   96   101     -       -       -     -   -
+95  6      98   101  107     -       -       -     -   -
+100 6      104  107  112     -       -       -     -   -
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MetricSize:
+    """What the standards say of one nominal diameter [mm], all in mm; None where they have no such size."""
+
+    size: float
+    pitch: float
+    holes: tuple[float, float, float]
+    flats: float | None
+    socket: float | None
+    washer: tuple[float, float, float] | None
+
+
+def _read(line: str) -> MetricSize:
+    """A line of the table."""
+    numbers = [None if word == "-" else float(word) for word in line.split()]
+    size, pitch, fine, medium, coarse = (number or 0.0 for number in numbers[:5])  # which every line has
+    inner, outer, thickness = numbers[7:]
+    return MetricSize(
+        size=size,
+        pitch=pitch,
+        holes=(fine, medium, coarse),
+        flats=numbers[5],
+        socket=numbers[6],
+        washer=(inner, outer, thickness) if inner and outer and thickness else None,
+    )
+
+
+METRIC: Mapping[float, MetricSize] = {one.size: one for one in map(_read, _TABLE.strip().splitlines())}
+# sizes that a hole by itself is taken for: with M7 or M27 every bore of 8 or 30 mm would be for a bolt
+COMMON = tuple(size for size in METRIC if 3 <= size <= 24 and size not in (3.5, 7))
+PINS = (0.6, 0.8, 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 40, 50)
+COMMON_PINS = tuple(pin for pin in PINS if 3 <= pin <= 30)  # the same of pins
+NOMINAL = 0.05  # mm: a hole wider by no more is drawn as wide as the thread, whatever the last digit of its radius
+
+
+def metric(size: float) -> MetricSize:
+    """The line of a nominal diameter [mm]. Raises InputError where the table has no such size."""
+    if size not in METRIC:
+        raise InputError(f"M{size:g} is not in the tables; give one of {', '.join(f'M{one:g}' for one in METRIC)}")
+    return METRIC[size]
+
+
+def nearest_size(value: float, of: Callable[[MetricSize], float | None], within: float) -> float | None:
+    """The size [mm] whose number is nearest to a value [mm], at most `within` of it off [-]; None where none is."""
+    numbers = {size: number for size, one in METRIC.items() if (number := of(one)) is not None}
+    best = min(numbers, key=lambda size: abs(numbers[size] - value))
+    return best if abs(numbers[best] - value) <= within * value else None
+
+
+def size_for_hole(diameter: float) -> float | None:
+    """Return the nominal diameter [mm] of the bolt that a clearance hole [m] is made for; None where there is none.
+
+    The common size whose medium hole is nearest, the greater of two alike, if the hole is wider than the bolt by more
+    than 0.05 mm and not wider than its coarse hole. What is narrower is as wide as the thread: see `is_tapped`.
+
+    Source:
+        ISO 273:1979.
+    """
+    hole = 1e3 * diameter
+    fitting = [size for size in COMMON if size + NOMINAL < hole <= METRIC[size].holes[2] * (1 + 1e-6)]
+    return min(fitting, key=lambda size: (round(abs(METRIC[size].holes[1] - hole), 6), -size), default=None)
+
+
+def is_tapped(diameter: float, size: float) -> bool:
+    """Whether a hole [m] may be that of the coarse thread of a size [mm].
+
+    CAD models show a thread by its tap drill, by its core, or by its nominal diameter.
+    """
+    return bool(size - 1.3 * METRIC[size].pitch <= 1e3 * diameter <= size + NOMINAL)
+
 
 # property class: least tensile strength, least stress at yield (or at 0.2 % or 0.0048 d of lasting elongation), and
 # stress under proof load [Pa] (ISO 898-1:2013, Table 3)

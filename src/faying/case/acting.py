@@ -9,8 +9,8 @@ from faying.bolt.bolt import FittedBolt
 from faying.errors import InputError
 from faying.fe.attach import mean_motion
 from faying.fe.elasticity import rigid_motions
-from faying.fe.faces import face_centre
 from faying.fe.nodal_forces import pressure_forces, thermal_forces
+from faying.fe.sides import face_centre
 from faying.joint.attachments import nearest_node
 from faying.joint.bolted import BoltedStructure
 from faying.joint.joint import known_face

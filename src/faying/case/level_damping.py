@@ -10,8 +10,7 @@ from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
-from faying.microslip.level_basis import level_basis
-from faying.microslip.levels import SPRINGS, AtLevels, cut_laws, level_model
+from faying.microslip.levels import SPRINGS, AtLevels, cut_laws, level_basis, level_model
 from faying.microslip.microslip import Microslip
 from faying.notes import Note
 from faying.typing import Array

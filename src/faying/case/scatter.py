@@ -12,7 +12,7 @@ from faying.case.case import checked_mesh, interface_of, surfaces_of
 from faying.case.law_range import of_joints
 from faying.case.waves import drawn_on
 from faying.distribution import Distribution
-from faying.form.machining import ASSUMED
+from faying.form.waviness import ASSUMED
 from faying.study.keys.bolt_sheet import BoltSheetChoice
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice

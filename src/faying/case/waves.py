@@ -8,8 +8,7 @@ from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
 from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
-from faying.form.machining import ASSUMED
-from faying.form.waviness import LaidWaves
+from faying.form.waviness import ASSUMED, LaidWaves
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.surface import Surface
 from faying.study.study import Study

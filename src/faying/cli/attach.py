@@ -95,7 +95,7 @@ def command(
     MODEL: .inp of Abaqus or CalculiX, .bdf, .msh, .cdb.
     """
     from faying.export.attach import attach
-    from faying.export.bare import modes_with_joint
+    from faying.export.matrix_modes import modes_with_joint
 
     if solver is None and matrices is None:
         raise InputError(f"nothing to do: name a solver with --to ({', '.join(SOLVERS)}), or matrices with --matrices")

@@ -20,7 +20,7 @@ WIDE = 18  # letters of a face's name in the table
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 def command(geometry: Path, part: str | None, unit: str | None, as_json: bool) -> None:
     """List the faces of GEOMETRY, a STEP or mesh file: number, kind, area, normal, centre, and where parts touch."""
-    from faying.setup.faces import faces
+    from faying.setup.face_names import faces
 
     facts = faces(geometry, unit=unit)
     if part is not None:

@@ -39,8 +39,7 @@ def command(
     as_json: bool,
 ) -> None:
     """Real modes of STUDY at its first preload, or of assembled matrices."""
-    from faying.export.assembled import Assembled
-    from faying.export.matrix_modes import modes_of
+    from faying.export.matrix_modes import Assembled, modes_of
     from faying.study import Study
 
     if (study is None) == (stiffness is None):

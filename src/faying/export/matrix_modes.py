@@ -1,21 +1,97 @@
-"""Modes of matrices that another program has assembled, or of a study at its first preload."""
+"""Modes of matrices that another program has assembled, with or without a joint added here, or of a study."""
 
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from faying.case.case import build
 from faying.checks import number, whole
-from faying.decks.matrices import total_mass
+from faying.decks.matrices import arranged, read_matrices, read_pair, total_mass
 from faying.errors import InputError
-from faying.export.assembled import Assembled
+from faying.export.attach import Attachment
+from faying.fe.elasticity import rigid_motions
 from faying.file_kinds import STUDY, kind_of
+from faying.files import together, write_arrays, write_text
 from faying.joint.modal import MAX_MODES
+from faying.joint.support_check import checked_preload
 from faying.misuse import checked_call
+from faying.numerics.damped import DampedModes, damped_modes
 from faying.numerics.memory import check_modes
 from faying.numerics.modes import lowest_modes, missed_modes
 from faying.study.study import Study
 from faying.style import Summary
 from faying.typing import Array, Index
+
+
+@dataclass(frozen=True, kw_only=True)
+class Assembled:
+    """Stiffness [N/m] and mass [kg] (n, n), sparse CSR; dofs (n, 2): node and direction; a frequency to shift by [Hz].
+
+    points: coordinates (n / 3, 3) [m] of the nodes, where known.
+    """
+
+    stiffness: Any
+    mass: Any
+    dofs: Index
+    shift_frequency: float
+    source: str
+    points: Array | None = None
+
+    @classmethod
+    def of_study(cls, study: Study) -> "Assembled":
+        """Assemble a study with the springs of its joints at its first preload."""
+        structure = build(study)
+        assembly = structure.assembly(solver=study.modes.solver)
+        found = checked_preload(structure, assembly, study.preloads[0])
+        structure = structure.under(found)
+        stiffness, _ = structure.coupled(structure.springs(found.pressures))
+        numbers = structure.mesh.numbers
+        dofs = np.column_stack([np.repeat(numbers, 3), np.tile([1, 2, 3], len(numbers))])
+        return cls(
+            stiffness=stiffness,
+            mass=structure.dynamic_matrices[1],
+            dofs=dofs,
+            shift_frequency=study.modes.shift_frequency or structure.shift_frequency,
+            source=study.title,
+            points=structure.mesh.points,
+        )
+
+    @classmethod
+    def of_files(cls, stiffness: Path, mass: Path | None, *, stiffness_unit: str, mass_unit: str) -> "Assembled":
+        """Read matrices of any program; see `faying.decks.matrices.read_pair`."""
+        K, M, dofs = read_pair(stiffness, mass, stiffness_unit=stiffness_unit, mass_unit=mass_unit)
+        return cls(stiffness=K, mass=M, dofs=dofs, shift_frequency=typical_frequency(K, M), source=stiffness.name)
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write stiffness.npz, mass.npz (SciPy), dofs.txt and where known points.txt, all or none of them."""
+        from scipy.sparse import csr_matrix
+
+        out = []
+        with together(folder, "give another (--export)") as hidden:
+            for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+                csr = csr_matrix(matrix)
+                arrays = {"format": b"csr", "shape": csr.shape}  # as scipy.sparse.save_npz has them
+                arrays |= {part: getattr(csr, part) for part in ("indices", "indptr", "data")}
+                out.append(write_arrays(hidden / f"{name}.npz", arrays, seal=False))
+            text = "\n".join(f"{node}.{axis}" for node, axis in self.dofs) + "\n"
+            out.append(write_text(hidden / "dofs.txt", text))
+            if self.points is not None:
+                text = "".join(f"{x:.17g} {y:.17g} {z:.17g}\n" for x, y, z in self.points.tolist())
+                out.append(write_text(hidden / "points.txt", text))
+        return [folder / file.name for file in out]
+
+
+def typical_frequency(stiffness: Any, mass: Any) -> float:
+    """A frequency [Hz] of the order of the first mode of a compact body: a wave of some ten bodies' length.
+
+    The mean of the diagonals gives the frequency of one element; a body of n unknowns is n^(1/3) elements across.
+    """
+    n = stiffness.shape[0]
+    element = np.sqrt(stiffness.diagonal().sum() / mass.diagonal().sum()) / (2 * np.pi)
+    return float(0.1 * element / np.cbrt(n))
+
 
 MAX_ROWS = 9  # frequencies in a summary
 
@@ -116,3 +192,54 @@ def modes_of(given: Assembled, count: int, shift: float) -> MatrixModes:
         solver=modes.factorisation.name,
         factor_memory=modes.factorisation.memory,
     )
+
+
+SPARE = 6  # modes beyond those asked for, for the basis of the complex ones
+MIN_RESISTANCE = 1e-9  # of the greatest energy of a rigid motion under an equal diagonal: below it nothing resists
+
+
+@checked_call
+def modes_with_joint(
+    attachment: Attachment,
+    matrices: str | Path,
+    *,
+    stiffness_unit: str | None,
+    mass_unit: str | None,
+    mass: str | Path | None = None,
+    dofs: str | Path | None = None,
+    count: int = 10,
+) -> tuple[DampedModes, int]:
+    """Find the elastic modes, with loss factors, of parts that another program has assembled, and of the joint.
+
+    Args:
+        attachment: The joint, on the mesh of the matrices, node by node.
+        matrices: File of stiffness and mass, or of the stiffness: .sti, .mtx, .npz, DMIG.
+        stiffness_unit, mass_unit: Units of the entries, such as "N/mm" and "t".
+        mass, dofs: With a .mtx: file of the mass, and of "node direction" of each row.
+        count: How many elastic modes.
+        solver: What factorises the matrices, by the names of a study; chosen where None.
+
+    Returns:
+        The modes, and how many rigid motions nothing resists.
+
+    Raises:
+        ReadError, InputError: Files or units that cannot be used, matrices of another mesh or with supports.
+        NotConverged: The iteration stops short.
+    """
+    pairs, mesh = attachment.pairs, attachment.deck.mesh
+    read = read_matrices(matrices, stiffness_unit=stiffness_unit, mass_unit=mass_unit, mass=mass, dofs=dofs)
+    bare, M = arranged(read, mesh)
+    K, C = bare + pairs.matrix(), pairs.matrix(pairs.loss)
+    rigid = rigid_motions(mesh.points)
+    energy = np.einsum("ij,ij->j", rigid, K @ rigid)
+    still = int(np.count_nonzero(energy < MIN_RESISTANCE * np.einsum("ij,i,ij->j", rigid, K.diagonal(), rigid)))
+    if still not in (0, 6):
+        raise InputError(
+            f"the matrices leave {still} of the six rigid motions free; take them from the model without supports, or "
+            "fixed in all directions"
+        )
+    speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in attachment.materials.values()]
+    shift = 0.02 * max(speeds) / mesh.size
+    check_modes(count + still + SPARE, K.shape[0])
+    found = lowest_modes(K, M, count + still + SPARE, shift_frequency=shift)
+    return damped_modes(found, K, M, C, rigid=still, count=count), still

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.fe.faces import sampled
-from faying.fe.sides import Blocks
+from faying.fe.sides import Blocks, sampled
 from faying.typing import Array
 
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from faying.fe.elements import FACES
-from faying.fe.faces import face_centre
-from faying.fe.sides import Blocks
+from faying.fe.sides import Blocks, face_centre
 from faying.typing import Array
 
 ROUND = 0.05  # spread of the distances from the centre over their mean, up to which a loop of edges is a circle

@@ -8,9 +8,8 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.elements import FACES
-from faying.fe.faces import surface_frame
 from faying.fe.overlap import overlap
-from faying.fe.sides import Blocks, padded
+from faying.fe.sides import Blocks, padded, surface_frame
 from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index
 

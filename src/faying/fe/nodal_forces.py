@@ -5,7 +5,7 @@ import numpy as np
 from faying.fe.elasticity import Solid
 from faying.fe.elements import SOLIDS
 from faying.fe.elements.element import gradients_in_space
-from faying.fe.faces import sampled
+from faying.fe.sides import sampled
 from faying.fe.solids import SolidMesh
 from faying.typing import Array
 

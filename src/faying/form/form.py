@@ -14,7 +14,7 @@ from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.fe.mesh import Mesh
 from faying.form.face_axes import FaceAxes
-from faying.form.flatness import minimum_zone
+from faying.form.fit import minimum_zone
 from faying.form.gap_map import FaceMap, GapMap
 from faying.form.waviness import PARAMETERS as OF_WAVINESS
 from faying.form.waviness import LaidWaves, ScanWaves, Waviness

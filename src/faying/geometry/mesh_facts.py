@@ -4,9 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from faying.fe.faces import face_centre
 from faying.fe.mesh import Mesh
-from faying.fe.sides import skin, triangles_of
+from faying.fe.sides import face_centre, skin, triangles_of
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, point_of, shape_of
 from faying.typing import Array
 

@@ -14,7 +14,7 @@ import numpy as np
 from faying.measured.mac import mac
 from faying.measured.pairing import FARTHEST
 from faying.numerics.follow import LIKE, partners
-from faying.sweeps.work import Rows
+from faying.sweeps.parallel import Rows
 from faying.typing import Array, Index
 
 NEAREST, MIN_SAMPLES = 0.1, 8  # share of the samples, and their number, that say which modes are the test's

@@ -24,8 +24,8 @@ from faying.study.keys.uncertain import UncertainChoice
 from faying.study.keys.varied import MODEL
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
-from faying.sweeps.variation import check_key
-from faying.sweeps.work import Rows
+from faying.sweeps.parallel import Rows
+from faying.sweeps.variant_builder import check_key
 from faying.typing import Array, Index
 
 COUNT = 1000  # samples of the posterior

@@ -25,7 +25,7 @@ from faying.progress import Report, silent
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
-from faying.sweeps.work import Rows
+from faying.sweeps.parallel import Rows
 from faying.typing import Array
 
 MIN_SAMPLES, MAX_SAMPLES = 8, 1_000_000  # samples

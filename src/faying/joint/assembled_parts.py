@@ -10,10 +10,10 @@ import numpy as np
 from faying.bolt.bolt import Bolt, FittedBolt, each_in_its_place
 from faying.bolt.dowel import Dowel, FittedDowel
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt
+from faying.fe.bonded import tie_stiffness
 from faying.fe.elasticity import Solid, assemble, rigid_motions
 from faying.fe.mesh import Mesh
 from faying.fe.sides import nodes_of
-from faying.fe.tied import tie_stiffness
 from faying.fe.vertices import VertexRestriction
 from faying.joint.attachments import PointMass, Support
 from faying.memory import available

@@ -7,8 +7,8 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.attach import mean_motion
-from faying.fe.faces import face_centre, sampled
 from faying.fe.mesh import Mesh
+from faying.fe.sides import face_centre, sampled
 from faying.misuse import checked_call
 from faying.typing import Array, Index
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from faying.bolt.bolt import BoltPlace
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidPlace
-from faying.fe.faces import NamedFaces, face_centre
-from faying.fe.sides import nodes_of
+from faying.fe.sides import NamedFaces, face_centre, nodes_of
 from faying.fe.solids import bodies_of
 from faying.joint.bolted import BoltedStructure
 from faying.typing import Array, Index, Mask

@@ -9,7 +9,7 @@ import numpy as np
 from faying.bolt.bolt import Bolt, BoltPlace, FittedBolt
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt, SolidPlace
 from faying.fe.elasticity import Solid
-from faying.fe.faces import NamedFaces, face_centre
+from faying.fe.sides import NamedFaces, face_centre
 from faying.joint.bolted import BoltedStructure
 from faying.notes import Note, percent
 from faying.typing import Array

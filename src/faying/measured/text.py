@@ -3,18 +3,231 @@
 import re
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
+from math import pi
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying.columns import split_heading, states_unit
+from faying.columns import Cell, is_unit, plain_unit, split_heading, states_unit
 from faying.errors import InputError, ReadError
 from faying.files import end_of, refuse_decimal_comma
-from faying.measured.frf import FRF, Dof, without_static
-from faying.measured.frf_table import FORM, FrfColumns, plain_layout, read_layout
-from faying.measured.uff_units import DIMENSIONS
+from faying.measured.frf import FRF, UNITS, Dof, without_static
+from faying.measured.uff_units import DIMENSIONS, unit_factor
 from faying.typing import Array, Complex
+from faying.units import scale
+
+ROLES = {
+    "frequency": {"frequency", "frequencies", "freq", "f"},
+    "omega": {"omega", "w", "ω", "angular frequency", "circular frequency"},
+    "real": {"real", "re", "realpart", "r"},
+    "imaginary": {"imaginary", "imag", "im", "imagpart", "i"},
+    "magnitude": {"magnitude", "mag", "amplitude", "amp", "abs", "modulus"},
+    "phase": {"phase", "angle", "arg"},
+    "coherence": {"coherence", "coh", "gamma^2", "γ^2"},
+}
+MAX_PHASE = 1e6  # rad
+PAIRS = {("real", "imaginary"): "parts", ("magnitude", "phase"): "polar"}
+FORM = "a table of FRFs looks like: frequency [Hz],real [m/s^2/N],imaginary [m/s^2/N] or frequency [Hz],magnitude [dB],"
+FORM += "phase [deg]"
+# the number of a reference may carry a prefix, as in "dB/1.00u (m/s^2)/N"
+REFERENCE = re.compile(r"(\d+\.?\d*(?:[eE][-+]?\d+)?)?([pnu](?=\s))?\s*(.*)")
+PREFIXES = {"": 1.0, "p": 1e-12, "n": 1e-9, "u": 1e-6}
+NO_UNIT = ("", "-", "1", "lin", "linear")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pair:
+    """Two columns that make one FRF: their places, how they are written, and the factors to SI.
+
+    decibels: whether the first is 20 log10 of the magnitude; turn: radians in one unit of the phase.
+    """
+
+    first: int
+    second: int
+    polar: bool
+    scales: tuple[float, float] = (1.0, 1.0)
+    decibels: bool = False
+    turn: float = 1.0
+
+    def values(self, table: Array) -> Complex:
+        """Complex values (f,) in SI. Raises ReadError for a phase of so many turns that its digits are lost."""
+        a, b = table[:, self.first], table[:, self.second]
+        if not self.polar:
+            a, b = (np.where(np.isfinite(one), one, np.nan) for one in (a, b))
+            return np.asarray(self.scales[0] * a + 1j * self.scales[1] * b)
+        most = float(np.abs(self.turn * b).max(initial=0.0))
+        if most > MAX_PHASE:
+            raise ReadError(f"a phase of {most:.3g} rad has lost its digits; is the column a phase?")
+        size = np.where(np.isfinite(a), 10 ** (a / 20) if self.decibels else a, np.nan)
+        return np.asarray(self.scales[0] * size * np.exp(1j * self.turn * b))
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrfColumns:
+    """Columns of a table of FRFs: place and factor to Hz of the frequency, the pairs, the places of their coherence
+    (none, or one for each pair), and sentences for the reader."""
+
+    frequency: int
+    hertz: float
+    pairs: tuple[Pair, ...]
+    coherence: tuple[int, ...] = ()
+    notes: tuple[str, ...] = ()
+    named: bool = True
+
+
+def plain_layout(width: int) -> FrfColumns:
+    """Frequency [Hz], then real and imaginary part of each FRF in SI, as a table without a heading is read."""
+    pairs = tuple(Pair(first=k, second=k + 1, polar=False) for k in range(1, width, 2))
+    return FrfColumns(frequency=0, hertz=1.0, pairs=pairs, named=False)
+
+
+def read_layout(line: str, quantity: str, where: str) -> FrfColumns:
+    """Read a heading.
+
+    Args:
+        line: the heading, such as "Frequency (Hz),Magnitude (dB),Phase (deg)".
+        quantity: what the FRFs are, one of QUANTITIES.
+        where: file and line, for messages.
+
+    Raises:
+        ReadError: a column is unknown or stands alone, a unit is unknown or of another quantity, a phase has no unit.
+    """
+    cells = tuple(_with_unit(cell, ("Hz", "rad", DIMENSIONS[quantity] + "/N")) for cell in split_heading(line))
+    roles = [_role(cell, where) for cell in cells]
+    lines = [k for k, role in enumerate(roles) if role in ("frequency", "omega")]
+    if len(lines) != 1:
+        raise ReadError(f'{where}: {len(lines)} columns of frequency in the heading "{line.strip()[:120]}"; {FORM}')
+    coherence = tuple(k for k, role in enumerate(roles) if role == "coherence")
+    rest = [k for k in range(len(cells)) if k != lines[0] and k not in coherence]
+    notes: list[str] = []
+    pairs = []
+    for a, b in zip(rest[::2], [*rest[1::2], None], strict=False):
+        names = roles[a], None if b is None else roles[b]
+        kind = PAIRS.get(names) or PAIRS.get(names[::-1])  # type: ignore[arg-type]
+        if kind is None or b is None:
+            shown = f'"{cells[a].text}"' + ("" if b is None else f' and "{cells[b].text}"')
+            raise ReadError(f"{where}: {shown} of the heading make no FRF; {FORM}")
+        first, second = (a, b) if names in PAIRS else (b, a)
+        pairs.append(_pair(cells, first, second, kind == "polar", quantity, where, notes))
+    if not pairs:
+        raise ReadError(f'{where}: no FRF in the heading "{line.strip()[:120]}"; {FORM}')
+    if coherence and len(coherence) != len(pairs):
+        raise ReadError(f"{where}: {len(coherence)} columns of coherence for {len(pairs)} FRFs; give each one, or none")
+    return FrfColumns(
+        frequency=lines[0],
+        hertz=_hertz(cells[lines[0]], roles[lines[0]], where),
+        pairs=tuple(pairs),
+        coherence=coherence,
+        notes=tuple(dict.fromkeys(notes)),
+    )
+
+
+def _with_unit(cell: Cell, units: tuple[str, ...]) -> Cell:
+    """The cell with the unit that its last word is, as in "Frequency kHz", where it states none in brackets."""
+    name, _, last = cell.text.rpartition(" ")
+    found, stated = plain_unit(last), set("[(") & set(cell.text) or cell.unit.lower().startswith("db")
+    if stated or not name or not any(is_unit(found, unit) for unit in units):
+        return cell
+    return Cell(text=cell.text, name=name.lower(), unit=found)
+
+
+def _role(cell: Cell, where: str) -> str:
+    """What one column is: the one role that its words name; one in decibels is a magnitude."""
+    words = {*re.findall(r"[^\W\d_]+", cell.name), cell.name}
+    found = [role for role, names in ROLES.items() if names & words]
+    if not found and re.match(r"db\b", cell.unit, re.IGNORECASE):
+        found = ["magnitude"]
+    if "omega" in found and "frequency" in found:
+        found.remove("frequency")
+    if len(found) != 1:
+        what = "is unknown" if not found else f"may be {' or '.join(found)}"
+        raise ReadError(
+            f'{where}: the column "{cell.text}" {what}; the known ones are {", ".join(ROLES)}; leave other '
+            f"columns out; {FORM}"
+        )
+    return found[0]
+
+
+def _hertz(cell: Cell, role: str, where: str) -> float:
+    unit = cell.unit.lower().replace("sec", "s")
+    if unit.replace(" ", "") in ("rad/s", "1/s", "rads^-1", "s^-1") and (role == "omega" or "rad" in unit):
+        return 1 / (2 * pi)
+    if unit in ("rpm", "1/min", "cpm", "min^-1"):
+        return 1 / 60
+    if not unit and role == "frequency":
+        return 1.0
+    if role == "frequency":
+        with suppress(InputError):
+            return scale({"hz": "Hz", "khz": "kHz"}.get(unit, cell.unit), "Hz")
+    raise ReadError(
+        f'{where}: the column "{cell.text}" states no unit that Faying reads; write frequency [Hz], frequency [kHz] or '
+        "omega [rad/s]"
+    )
+
+
+def _pair(
+    cells: tuple[Cell, ...], first: int, second: int, polar: bool, quantity: str, where: str, notes: list[str]
+) -> Pair:
+    if not polar:
+        factors = tuple(_factor(cells[k], quantity, where, notes) for k in (first, second))
+        if bool(cells[first].unit) != bool(cells[second].unit):
+            raise ReadError(
+                f'{where}: only one of "{cells[first].text}" and "{cells[second].text}" states a unit; state both'
+            )
+        return Pair(first=first, second=second, polar=False, scales=(factors[0], factors[1]))
+    angle = cells[second].unit.lower()
+    turns = {"deg": pi / 180, "degree": pi / 180, "degrees": pi / 180, "rad": 1.0, "radians": 1.0}
+    if angle not in turns:
+        raise ReadError(f'{where}: the column "{cells[second].text}" states no unit of angle; give deg or rad')
+    decibels = re.fullmatch(r"db(.*)", cells[first].unit, re.IGNORECASE)
+    if decibels is None:
+        factor = _factor(cells[first], quantity, where, notes)
+    else:
+        factor = _reference(decibels[1], cells[first], quantity, where, notes)
+    return Pair(
+        first=first,
+        second=second,
+        polar=True,
+        scales=(factor, 1.0),
+        decibels=decibels is not None,
+        turn=turns[angle],
+    )
+
+
+def _reference(text: str, cell: Cell, quantity: str, where: str, notes: list[str]) -> float:
+    """SI value at 0 dB, from words such as "re 1 m/s^2/N" or "(re 1e-6 (m/s^2)/(1 N))"."""
+    bare = re.sub(r"^\)?\s*[\[(]\s*(re\b.*)[\])]$", r"\1", text.strip(" ,;"))
+    bare = re.sub(r"^((re|ref|rel)\b[.:]*|/)\s*", "", bare)
+    number, prefix, unit = REFERENCE.fullmatch(bare).groups()  # type: ignore[union-attr]
+    times = float(number or 1) * PREFIXES[prefix or ""]
+    if not unit and times == 1:
+        notes.append(f'{where}: "{cell.text}" states no reference; 0 dB is taken as 1 {UNITS[quantity]}')
+        return 1.0
+    factor = unit_factor(re.sub(r"\(1(\.0*)?\s+", "(", unit), DIMENSIONS[quantity] + "/N")
+    if factor is None or times == 0:
+        raise ReadError(
+            f'{where}: "{cell.text}": "{bare}" is not a reference of {quantity}; write dB re 1 {DIMENSIONS[quantity]}/N'
+        )
+    return times * factor
+
+
+def _factor(cell: Cell, quantity: str, where: str, notes: list[str]) -> float:
+    if cell.unit.lower() in NO_UNIT:
+        notes.append(f'{where}: "{cell.text}" states no unit; {UNITS[quantity]} is taken')
+        return 1.0
+    factor = unit_factor(cell.unit, DIMENSIONS[quantity] + "/N")
+    if factor is None:
+        others = [name for name, unit in DIMENSIONS.items() if unit_factor(cell.unit, unit + "/N") is not None]
+        hint = (
+            f"this is a unit of {others[0]}, give that as the quantity"
+            if others
+            else f"write for example {DIMENSIONS[quantity]}/N"
+        )
+        raise ReadError(f'{where}: "{cell.unit}" of the column "{cell.text}" is not a unit of {quantity}; {hint}')
+    return factor
+
 
 BOTH_PARTS = re.compile(r"\(\s*[-+]?[^-+\s]+(?:[eE][-+]?\d+)?\s*[-+]\s*[^-+\s]+(?:[eE][-+]?\d+)?[ij]\s*\)")
 NUMBER = re.compile(r"\(?[-+]?(\.?\d|(nan|inf)\b)", re.IGNORECASE)  # what a line of numbers begins with

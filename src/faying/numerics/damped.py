@@ -13,9 +13,8 @@ import numpy as np
 
 from faying.errors import NotConverged
 from faying.numerics.modal_reanalysis import MIN_NEW_SHARE, Measure, ModalReanalysis
-from faying.numerics.modes import Modes
+from faying.numerics.modes import Modes, definite
 from faying.numerics.product import combined, product
-from faying.numerics.signs import definite
 from faying.style import Summary
 from faying.typing import Array, Complex, Index
 

@@ -6,6 +6,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from faying import __version__
 from faying.export import universal
 from faying.files import together, write_text
@@ -13,14 +15,17 @@ from faying.misuse import checked_call
 from faying.notes import FIRST_NOTES, TITLES, by_severity, grave, grouped
 from faying.output import answer, page, report_measured
 from faying.output.figures import narrowing
-from faying.output.report_curves import backbone_curves, response_curves
 from faying.output.scene import of_result, pages, to_text
+from faying.output.scene.text import packed_backbones, packed_curves
 from faying.output.sections import ReportSection, sections
-from faying.result import Result, backbone, interval_figure, level_figure, vibration
+from faying.result import Result, backbone, interval_figure, vibration
 from faying.result import figure as structure
 from faying.result import response_figure as response
+from faying.result.backbone import ROUNDING, Backbone, label
 from faying.result.fields import RESULT_FILE, declared
+from faying.result.response_figure import words
 from faying.style import WIDE, drawing, new_figure, uncollected
+from faying.units import in_mm
 
 
 def html(result: Result, pictures: dict[str, str] | None = None) -> str:
@@ -278,7 +283,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
         "damping",
         ReportFigure(
             name="damping",
-            draw=level_figure.damping_levels,
+            draw=interval_figure.damping_levels,
             caption="Damping ratio of each mode at levels of acceleration, at the greatest preload: slip in the joints "
             "and the damping at rest.",
             applies=lambda result: result.at_levels is not None,
@@ -411,3 +416,49 @@ def write_report(result: Result, folder: str | Path, *, uff: bool = False) -> li
     with together(Path(folder), "give another folder", [RESULT_FILE]) as hidden:
         files = [*write(result, hidden), *(universal.write(result, hidden) if uff else [])]
     return [Path(folder) / file.name for file in files]
+
+
+MAX_PAIRS = 12  # of output and input
+POINTS = 200  # of a backbone
+AROUND = 1.05  # room beside measured points, as a factor of the acceleration
+
+
+def response_curves(result: Result) -> list[dict[str, Any]]:
+    """Accelerance of the first pairs of output and input at every preload, for curves in a page."""
+    found = result.response
+    assert found is not None
+    loads = list(result.load_names)
+    accelerance = -((2 * np.pi * found.frequencies) ** 2)[None, :, None, None] * found.values
+    return [
+        packed_curves(
+            f"{words(*found.outputs[o])} / {words(*found.inputs[i])}",
+            "|accelerance| [m/s²/N]",
+            found.frequencies,
+            dict(zip(loads, accelerance[:, :, o, i], strict=True)),
+        )
+        for o, i in list(np.ndindex(*found.values.shape[2:]))[:MAX_PAIRS]
+    ]
+
+
+def backbone_curves(curves: Sequence[Backbone]) -> dict[str, Any]:
+    """Curves of one mode for a page: on one grid of accelerations, none beyond its own end."""
+    low = max(curve.acceleration[0] for curve in curves)
+    grid = np.geomspace(low, max(curve.acceleration[-1] for curve in curves), POINTS)
+    measured, marked = curves[0].measured, ""
+    if measured is not None:
+        ends = measured.acceleration.min() / AROUND, measured.acceleration.max() * AROUND
+        grid = np.unique(np.concatenate([grid, measured.acceleration, ends]))
+    found = {}
+    for curve in curves:
+        inside = (grid >= low) & (grid <= curve.acceleration[-1] * (1 + 1e-9))
+        frequency, damping = (np.full(len(grid), np.nan) for _ in range(2))
+        frequency[inside], damping[inside] = curve.at_acceleration(grid[inside])
+        damping[damping < ROUNDING * curve.damping.max()] = np.nan  # nothing slips yet
+        found[label(curve, curves)] = (frequency, 100 * damping)
+    if measured is not None:
+        place = np.searchsorted(grid, measured.acceleration)
+        frequency, damping = (np.full(len(grid), np.nan) for _ in range(2))
+        frequency[place], damping[place] = measured.frequency, 100 * measured.damping
+        marked = f"measured ({measured.source})"
+        found[marked] = (frequency, damping)
+    return packed_backbones(f"acceleration at {in_mm(curves[0].at)} [m/s²]", grid, found, marked)

@@ -17,8 +17,7 @@ from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
-from faying.microslip.level_basis import level_basis
-from faying.microslip.levels import SPRINGS, LevelModel, level_model
+from faying.microslip.levels import SPRINGS, LevelModel, level_basis, level_model
 from faying.microslip.microslip import Microslip
 from faying.service.mode_curve import ModeCurve
 from faying.typing import Array

@@ -6,10 +6,9 @@ from math import floor, log10
 
 import numpy as np
 
-from faying.bolt.compliance import Head
 from faying.bolt.threads import THICK_CLASS, Fastener, Thread, is_graded
 from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
-from faying.bolt.vdi2230 import greatest_preload
+from faying.bolt.vdi2230 import Head, greatest_preload
 from faying.geometry.face_facts import FaceFacts, Point, point_of
 from faying.typing import Array
 

@@ -26,8 +26,8 @@ from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import duration
 from faying.setup.bolt_proposal import MAX_NAMES, grouped
+from faying.setup.edit import key_of, line_of, line_of_fault, lines_of
 from faying.setup.expected import Expected, unknowns_of
-from faying.setup.lines import key_of, line_of, line_of_fault, lines_of
 from faying.setup.reach import law_findings
 from faying.setup.sketch import Sketch
 from faying.study.declaration.reader import StudyFaults

@@ -7,8 +7,8 @@ from math import pi
 
 import numpy as np
 
-from faying.bolt.standards import NOMINAL, metric
 from faying.bolt.tapped import INSIDE
+from faying.bolt.threads import NOMINAL, metric
 from faying.fe.line import Line
 from faying.geometry.bores import Bore, bores, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts

@@ -1,13 +1,18 @@
-"""Names for the faces that a proposed study speaks of, with the selectors that find them."""
+"""The faces of a STEP or mesh file, and names for those that a proposed study speaks of, with their selectors."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
+from faying.decks.meshfile import read_mesh
 from faying.errors import InputError
-from faying.geometry.face_facts import FaceFacts, GeometryFacts
+from faying.file_kinds import STEP, kind_of
+from faying.geometry.face_facts import FaceFacts, GeometryFacts, read_facts
+from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import AXES, Selector, chosen
+from faying.misuse import checked_call
 
 
 @dataclass
@@ -61,3 +66,26 @@ class FaceNames:
             except InputError:
                 continue
         return Selector(part=face.part, number=face.number)
+
+
+@checked_call
+def faces(geometry: str | Path, *, unit: str | None = None) -> GeometryFacts:
+    """Return the parts of a STEP or mesh file, their faces, and where faces of two parts look at each other.
+
+    Args:
+        geometry: STEP file, or mesh file of another program, of which the named faces count.
+        unit: Unit of a mesh file's coordinates, such as "mm"; a STEP file states its own.
+
+    Returns:
+        The facts: `parts`, `faces` (number, kind, area, normal, centre, radius), `contacts`.
+
+    Raises:
+        InputError: A unit for a STEP file, none for a mesh file that needs one, or a file of another kind.
+        ReadError: The file cannot be read.
+    """
+    path = Path(geometry)
+    if kind_of(path) is not STEP:
+        return mesh_facts(read_mesh(path, unit=unit))
+    if unit is not None:
+        raise InputError("a unit is for mesh files; a STEP file states its unit, so leave it out")
+    return read_facts(path)

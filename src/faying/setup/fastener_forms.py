@@ -9,8 +9,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from faying.bolt.compliance import Head
-from faying.bolt.standards import METRIC, is_tapped, nearest_size
+from faying.bolt.threads import METRIC, is_tapped, nearest_size
+from faying.bolt.vdi2230 import Head
 from faying.fe.line import FACING, Line, across
 from faying.geometry.bores import Bore, tubes
 from faying.geometry.face_facts import FaceFacts, GeometryFacts

@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from faying.bolt.standards import nearest_size
+from faying.bolt.threads import nearest_size
 from faying.fe.line import Line
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, Point, TouchingFaces
 from faying.setup.bolt_proposal import BoltProposal, to_nanometres

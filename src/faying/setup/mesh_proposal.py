@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.bolt.standards import nearest_size
+from faying.bolt.threads import nearest_size
 from faying.decks.meshfile import read_mesh, read_pretensions
 from faying.decks.raw import Pretension
 from faying.fe.line import across

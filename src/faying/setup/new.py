@@ -18,7 +18,7 @@ from faying.materials import CATALOGUE
 from faying.misuse import checked_call
 from faying.setup.bolt_proposal import GRADE, BoltProposal, grouped
 from faying.setup.edit import written as quoted
-from faying.setup.faces import faces
+from faying.setup.face_names import faces
 from faying.setup.fasteners import DowelProposal
 from faying.setup.mesh_proposal import propose_mesh
 from faying.setup.proposal import Proposal, propose

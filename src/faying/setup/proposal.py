@@ -14,8 +14,7 @@ from faying.setup.bolt_proposal import BoltProposal, rounded
 from faying.setup.expected import memory_of_run, unknowns_of
 from faying.setup.face_names import FaceNames
 from faying.setup.fasteners import DowelProposal, find_fasteners, quoted
-from faying.setup.found_bolts import found_bolts
-from faying.setup.found_dowels import found_dowels, free_rows
+from faying.setup.found_bolts import found_bolts, found_dowels, free_rows
 from faying.units import show
 
 ROOM = 0.7  # of the free memory that a proposed run takes, whose unknowns are an estimate

@@ -14,7 +14,7 @@ from faying.study.keys.surface import Surface
 from faying.study.keys.varied import MODEL, varied
 from faying.study.keys.varied import words as words_of_keys
 from faying.study.study import Study
-from faying.sweeps.variation import StudyVariant, check_key, scaled_parts
+from faying.sweeps.variant_builder import StudyVariant, check_key, scaled_parts
 
 MAX_POINTS = 1_000_000  # points of a grid
 

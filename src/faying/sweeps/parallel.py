@@ -1,12 +1,34 @@
-"""Chunks of evaluations, here or in processes of this machine."""
+"""Chunks of evaluations, here or in processes of this machine: what they take and give."""
 
 import os
 import threading
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
 
 from faying.apart import in_processes
-from faying.sweeps.work import Rows, Work
+from faying.errors import FayingError
+from faying.typing import Array
+
+Rows = dict[str, Array]
+Work = Callable[[Sequence[int]], Rows]
+
+
+def rows_of(points: Iterable[int], answer: Callable[[int], Mapping[str, Any]], nothing: Mapping[str, Any]) -> Rows:
+    """Rows of some points: what `answer` gives of each, `nothing` where there is no answer, and `reasons` why."""
+    rows: dict[str, list[Any]] = {name: [] for name in (*nothing, "reasons")}
+    for point in points:
+        found, reason = nothing, ""
+        try:
+            found = answer(point)
+        except FayingError as fault:
+            reason = str(fault)
+        for name, value in {**found, "reasons": reason}.items():
+            rows[name].append(value)
+    return {name: np.array(values) for name, values in rows.items()}
+
 
 LOOK = 0.5  # s between two looks of a worker for its parent
 

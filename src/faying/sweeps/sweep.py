@@ -16,10 +16,9 @@ from faying.study.part_folder import fingerprint
 from faying.study.study import Study
 from faying.sweeps.axes import Axis, Grid
 from faying.sweeps.files import OF_MODES, Sweep, SweepStore
-from faying.sweeps.parallel import each
+from faying.sweeps.parallel import each, rows_of
 from faying.sweeps.trainer import REFINED_ABOVE, Trainer
 from faying.sweeps.variant_builder import VariantBuilder, contact_shares
-from faying.sweeps.work import rows_of
 from faying.typing import Array
 
 CHUNK = 25  # evaluations between two writings to disk

@@ -20,8 +20,7 @@ def show_two_runs(files: tuple[Path, Path], load: str | None, out: Path | None, 
     """Print how two results differ, at one preload or at each that both have; write tables and figures to `out`."""
     from faying.output import table
     from faying.result import Result
-    from faying.result.difference import compare_runs, shared_preloads
-    from faying.result.difference_figure import differences
+    from faying.result.difference import compare_runs, differences, shared_preloads
     from faying.style import save
 
     first, second = (Result.load(file) for file in files)

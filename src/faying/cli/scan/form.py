@@ -21,7 +21,7 @@ from faying.units import show
 @click.option("--plot", type=FILE, help="Write the map (png, pdf, svg).")
 def command(file: Path, is_gap: bool, as_json: bool, plot: Path | None, **given: str | None) -> None:
     """Flatness, crowns and twist of the form in FILE: a list of points x, y, z (csv, txt, dat, xyz, asc) or a scan."""
-    from faying.form import figure as drawing
+    from faying.form import fit as drawing
     from faying.form.fit import fit_form
     from faying.form.gap_map import read_heights
     from faying.style import check_ending, save

@@ -17,7 +17,7 @@ from faying.study.keys.uncertain import Input, UncertainChoice
 from faying.study.keys.varied import MODEL, varied
 from faying.study.study import Study
 from faying.surface.estimators.base import EstimateScatter
-from faying.sweeps.variation import StudyVariant, check_key, scaled_parts
+from faying.sweeps.variant_builder import StudyVariant, check_key, scaled_parts
 from faying.typing import Array
 
 LEVEL = "surface.level"  # of the spectrum in the middle of its band, at a given D

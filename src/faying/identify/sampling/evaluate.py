@@ -20,10 +20,9 @@ from faying.numerics.follow import follow
 from faying.progress import Report, silent
 from faying.reduction.reduced import ReducedModel, Variant
 from faying.study.keys.test import TestChoice
-from faying.sweeps.parallel import each
+from faying.sweeps.parallel import Rows, each, rows_of
 from faying.sweeps.trainer import Trainer
 from faying.sweeps.variant_builder import VariantBuilder, contact_shares
-from faying.sweeps.work import Rows, rows_of
 from faying.typing import Array, Index
 
 TRAINED = 1.5e-4  # relative error of a frequency where the bases are trained

@@ -18,9 +18,8 @@ from faying.numerics.follow import LIKE
 from faying.result.backbone import Backbone
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.study import Study
-from faying.sweeps.parallel import each
+from faying.sweeps.parallel import Rows, each, rows_of
 from faying.sweeps.variant_builder import VariantBuilder
-from faying.sweeps.work import Rows, rows_of
 from faying.typing import Array
 
 MIN_BACKBONES = 8  # backbones

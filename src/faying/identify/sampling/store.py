@@ -4,7 +4,7 @@ from faying.reduction.reduce import Reduction
 from faying.reduction.reduced import ReducedModel
 from faying.study.part_folder import PartFile
 from faying.sweeps.files import kept_model
-from faying.sweeps.work import Rows
+from faying.sweeps.parallel import Rows
 from faying.typing import Array
 
 Bases = tuple[ReducedModel, tuple[Array, Array] | None]

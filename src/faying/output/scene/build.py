@@ -1,20 +1,25 @@
-"""Scenes of results, studies and meshes."""
+"""Scenes of results, studies, meshes, STEP files, and of any file by what it holds."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from faying.errors import InputError, ReadError
 from faying.fe.mesh import Mesh
 from faying.fe.outline import edges_of, normals, outline, regions
+from faying.file_kinds import RESULT, STUDY, taken
+from faying.geometry.face_facts import read_facts
 from faying.joint.attachments import PointMass, Support, nearest_node
-from faying.output.scene.model import Face, Mass, Scene, SceneBolt, SceneJoint, SceneModes, SceneSupport
+from faying.output.scene.text import Face, Mass, Scene, SceneBolt, SceneJoint, SceneModes, SceneSupport
 from faying.result import Result
 from faying.result.maps import joint_map_of
 from faying.typing import Array, Index
 
 if TYPE_CHECKING:
     from faying.study import Study
+
 
 SHARP = 0.7  # rad: neighbours whose normals differ by more have a feature edge between them
 
@@ -173,7 +178,7 @@ def drawn(diameter: float, extent: Sequence[float], size: float) -> tuple[float,
 def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[SceneBolt, ...]:
     """The bolts of a study on its mesh."""
     from faying.bolt.bolt import Bolt
-    from faying.fe.faces import face_centre
+    from faying.fe.sides import face_centre
 
     out = []
     for bolt in study.bolts:
@@ -221,3 +226,81 @@ def _masses(
         elif one.face in by_name:
             out.append(Mass(mass=one.mass, point=faces[by_name[one.face]].centre + np.array(one.offset)))
     return tuple(out)
+
+
+CLOSE = 1e-7  # of the size: corners of triangles nearer than this are one
+
+
+def of_step(path: str | Path) -> Scene:
+    """Return the scene of a STEP file, tessellated by the CAD kernel in a process of its own.
+
+    Corners that lie in one place on one part are joined, and triangles without area left out. The number of a face is
+    its position, from 1, in `list(solid.faces)` of its solid, before any gluing.
+
+    Raises:
+        ReadError: The file cannot be read, also where the CAD kernel dies on it.
+    """
+    facts = read_facts(Path(path), touching=False)
+    corners, owner = facts.corners, facts.face_of
+    parts = [part.name for part in facts.parts]
+    part_of_triangle = np.array([parts.index(one.part) for one in facts.faces])[owner]
+    size = float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0)))
+    grid = np.rint(corners.reshape(-1, 3) / (CLOSE * size)).astype(np.int64)
+    _, first, inverse = np.unique(
+        np.column_stack([np.repeat(part_of_triangle, 3), grid]), axis=0, return_index=True, return_inverse=True
+    )
+    points, triangles = corners.reshape(-1, 3)[first], inverse.reshape(-1, 3).astype(np.int64)
+    a, b, c = triangles.T
+    whole = (a != b) & (b != c) & (c != a)
+    triangles, owner = triangles[whole], owner[whole].astype(np.int64)
+    _, _, normal = measures(points, triangles, owner, len(facts.faces))
+    faces = [
+        face(parts.index(one.part), one.number, one.name, one.area, np.array(one.centre), normal[k])
+        for k, one in enumerate(facts.faces)
+    ]
+    return Scene(
+        title=facts.file,
+        points=points,
+        triangles=triangles,
+        parts=tuple(parts),
+        faces=tuple(faces),
+        face_of_triangle=owner,
+        edges=feature_edges(points, triangles, owner),
+    )
+
+
+def of_file(path: str | Path, unit: str | None = None) -> Scene:
+    """Return the scene of a study (.toml), a result (.nc), a STEP file or a mesh.
+
+    Args:
+        path: The file; what it holds says what it is.
+        unit: Of a mesh file, such as "mm", since no mesh file says its own.
+
+    Raises:
+        ReadError: The file is missing or cannot be read.
+        InputError: A mesh file without unit, a unit for another file, or a study that does not fit its geometry.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise ReadError(f"no file {file}")
+    kind = taken(file, "geometry", "mesh", "study", "result")
+    meshed = "mesh" in kind.serves
+    if unit is not None and not meshed:
+        raise InputError(f"--unit is for mesh files; {file.name} states its units, so leave --unit out")
+    if kind is STUDY:
+        from faying.case.case import checked_mesh
+        from faying.study import Study
+
+        study = Study.read(file)
+        return of_mesh(checked_mesh(study), study)
+    if kind is RESULT:
+        from faying.result import Result
+
+        return of_result(Result.load(file))
+    if not meshed:
+        return of_step(file)
+    if unit is None:
+        raise InputError(f'a mesh file does not state its unit; give that of {file.name}, for example --unit "mm"')
+    from faying.decks.meshfile import read_mesh
+
+    return of_mesh(read_mesh(file, unit=unit), title=file.name)

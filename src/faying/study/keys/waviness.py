@@ -3,8 +3,7 @@
 from typing import Any
 
 from faying.contact.parameter import Parameter
-from faying.form.machining import GAUSSIAN, PROCESSES, RMS_OF_FLATNESS
-from faying.form.waviness import OF_WAVES, PARAMETERS, Waviness
+from faying.form.waviness import GAUSSIAN, OF_WAVES, PARAMETERS, PROCESSES, RMS_OF_FLATNESS, Waviness
 from faying.study.declaration.declared import Declared, Key
 from faying.study.declaration.reader import Table
 from faying.units import show

@@ -1,1 +1,1 @@
-"""One estimator of D and G a file; `table` lists them."""
+"""The estimators of D and G, and what they share."""
