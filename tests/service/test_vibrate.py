@@ -247,12 +247,15 @@ def test_bad_tables_are_refused_with_the_right_form(given, why):
 def test_slopes_are_decibels_an_octave_of_power_and_of_amplitude():
     """The qualification level of NASA GSFC-STD-7000 for small units: 14.1 g rms; half of it at -6 dB."""
     rows = [("20 Hz", "0.026 g^2/Hz"), ("50 Hz", "0.16 g^2/Hz"), ("800 Hz", "0.16 g^2/Hz"), ("2000 Hz", "0.026 g^2/Hz")]
-    assert faying.Excitation("GEVS", psd=rows).table.rms / 9.80665 == pytest.approx(14.1, abs=0.05)
+    level = faying.Excitation("GEVS", psd=rows).table
+    square = quad(lambda x: float(level.at(np.array(x))), 20, 2000, points=[50, 800], limit=200)[0]
+    assert np.sqrt(square) / 9.80665 == pytest.approx(14.1, abs=0.05)
     rise = faying.Excitation("rise", psd=[("20 Hz", "+6 dB/oct"), ("80 Hz", "1 g^2/Hz"), ("160 Hz", "-3 dB/oct")]).table
     assert rise.values / 9.80665**2 == pytest.approx([10**-1.2, 1.0, 10**-0.3])
     sine = faying.Excitation("sine", sine=[("10 Hz", "1 g"), ("20 Hz", "6.0206 dB/oct")]).table
     assert sine.values / 9.80665 == pytest.approx([1.0, 2.0], rel=1e-6)
-    assert rise.rms**2 == pytest.approx(quad(lambda x: float(rise.at(np.array(x))), 20, 160, points=[80])[0], rel=1e-6)
+    # 6 dB an octave rise as the square of the frequency, and -3 dB fall as its inverse
+    assert rise.at(np.array([40.0, 120.0])) / 9.80665**2 == pytest.approx([10**-0.6, 10 ** (-0.3 * np.log2(1.5))])
     assert rise.at(np.array([19.0, 161.0])).tolist() == [0.0, 0.0]
 
 

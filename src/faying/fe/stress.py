@@ -46,13 +46,6 @@ def von_mises(stress: Array) -> Array:
     return np.asarray(np.sqrt(np.maximum(np.einsum("nik,ij,njk->nk", stress, SQUARE, stress, optimize=True), 0.0)))
 
 
-def principal(stress: Array) -> Array:
-    """Principal stresses (n, 3, k) of stresses (n, 6, k) [Pa], the greatest first."""
-    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, 1, 0)
-    tensor = np.stack([np.stack(row, -1) for row in ((xx, xy, zx), (xy, yy, yz), (zx, yz, zz))], -2)
-    return np.moveaxis(np.linalg.eigvalsh(tensor)[..., ::-1], -1, 1)
-
-
 def part_stresses(
     mesh: SolidMesh, materials: Mapping[str, Solid], motion: Array, strains: Mapping[str, float] | None = None
 ) -> dict[str, PartStress]:

@@ -56,16 +56,6 @@ class InputTable:
         )
         return np.asarray(np.where(inside, np.exp(logs), 0.0))
 
-    @property
-    def rms(self) -> float:
-        """Root of the integral of a density over the table: each stretch is a power of the frequency."""
-        total = 0.0
-        for (f, g), (f2, g2) in pairwise(zip(self.frequencies.tolist(), self.values.tolist(), strict=True)):
-            power = np.log(g2 / g) / np.log(f2 / f) + 1
-            ratio = np.log(f2 / f)
-            total += g * f * (ratio if abs(power * ratio) < 1e-9 else np.expm1(power * ratio) / power)
-        return float(np.sqrt(total))
-
 
 @checked_call
 @dataclass(frozen=True, init=False, eq=False)
