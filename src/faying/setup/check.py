@@ -340,7 +340,6 @@ def _expected(
         else:
             text += f'geometry.size = "{show(ratio * spec.size, "m", digits=2)}" fits'
             text += f", with face sizes {ratio:.2g} times theirs" if spec.face_size else ""
-        text += ", or see docs on solvers for larger machines"
         found.add("fault" if expected.memory > TOO_MUCH * free else "note", "expected", text, key)
     else:
         found.add("ok", "expected", text, key)
