@@ -8,7 +8,7 @@ import numpy as np
 from faying.checks import choice, number
 from faying.contact.conductance import heat_conductance
 from faying.contact.law import ContactLaw
-from faying.decks.system import UnitSystem
+from faying.decks.deck import UnitSystem
 from faying.joint.joint_law import JointLaw
 from faying.materials import ContactPair
 from faying.typing import Array

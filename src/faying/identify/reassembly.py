@@ -27,8 +27,7 @@ from faying.progress import Report, silent
 from faying.result import Result
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
-from faying.sweeps.parallel import each
-from faying.sweeps.work import Rows, rows_of
+from faying.sweeps.parallel import Rows, each, rows_of
 from faying.typing import Array, Index
 
 MIN_ASSEMBLIES, MAX_ASSEMBLIES = 2, 100_000
