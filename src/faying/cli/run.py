@@ -90,8 +90,7 @@ def text(result: Any, *, everything: bool = True) -> str:
     hidden = len(answer.rows) - modes
     first = [*wrapped(answer.above), *rows, *[f"{hidden} more modes with --all"] * (hidden > 0), ""]
     head = f"{result.title}: {result.unknowns:,} unknowns, {result.solver} ({result.factor_memory / 1e9:.2g} GB)"
-    state = "settled" if result.settled else "first loading"
-    head += f", {result.damping} loss in the joints, {state}" if result.joints else ""
+    head += f", {result.damping} loss in the joints, {result.joint_state}" if result.joints else ""
     lines = [*wrapped(head), "", *first, *_sentences(result)]
     before: list[Any] = []
     for note in grave(result.notes)[:FIRST_NOTES]:

@@ -8,8 +8,6 @@ from faying.joint.bolted import BoltedStructure
 from faying.joint.state import State, solve_structure
 from faying.misuse import checked_call
 
-Forces = float | str | Mapping[str, float | str] | None  # of the bolts: one for all, or bolt -> force
-
 
 @checked_call
 @dataclass(frozen=True, init=False, repr=False)
@@ -37,7 +35,7 @@ class Structure(BoltedStructure):
     @overload
     def solve(
         self,
-        preload: Forces = None,
+        preload: float | str | Mapping[str, float | str] | None = None,
         *,
         modes: int = 10,
         damping: Literal["hysteretic", "viscous"] = "hysteretic",
@@ -61,7 +59,13 @@ class Structure(BoltedStructure):
     @checked_call
     def solve(
         self,
-        preload: Forces | list[str] | list[float] | list[Mapping[str, float | str]] = None,
+        preload: float
+        | str
+        | Mapping[str, float | str]
+        | None
+        | list[str]
+        | list[float]
+        | list[Mapping[str, float | str]] = None,
         *,
         modes: int = 10,
         damping: Literal["hysteretic", "viscous"] = "hysteretic",

@@ -100,7 +100,7 @@ def _answer(result: Result) -> tuple[ReportSection, ...]:
 
 JOINED = (
     "Loss factors come from complex modes with {} loss in the joints. Free: faces apart. Bonded: no gap and no slip in "
-    "any joint."
+    "any joint. Joints: {}."
 )
 
 
@@ -113,7 +113,7 @@ def _modes(result: Result) -> tuple[ReportSection, ...]:
             name="modes",
             rows=table.modes(result),
             title="Modes at every preload" if result.bolts else "Modes as modelled",
-            below=f"{JOINED.format(result.damping) if result.joints else ''}{rigid}",
+            below=f"{JOINED.format(result.damping, result.joint_state) if result.joints else ''}{rigid}",
         ),
         ReportSection(
             name="ranges",

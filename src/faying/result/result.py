@@ -26,6 +26,8 @@ class Result(RunRecord):
     state, None where none states one; `alternatives` names other laws, their frequencies are `alternative_frequencies`.
     `backbones` are the curves over amplitude that the study asks for, at the greatest preload; `vibrations` what it
     does in service, one after another at each preload.
+    `carried` is the greatest preload that the joints carried before each, None where all are first loading; `settled`
+    says that this was the greatest of the study.
     `tightening` names the bolts in the order in which they were pulled, and is empty where all were pulled at once.
     `parts`, `faces`, `joint_faces` (the two faces of each joint), `supports` and `masses` say what the structure is
     made of; they and the fields that go with them are empty or None in files of earlier versions.

@@ -449,6 +449,7 @@ class RunRecord(Recorded):
         """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps and shapes are left out."""
         out: dict[str, Any] = {"title": self.title, "unknowns": self.unknowns, "solver": self.solver}
         out["factor_memory"] = {"unit": "B", "values": self.factor_memory}
+        out |= {"joint_state": self.joint_state} if self.joints else {}
         out |= in_units(self, without=(*MAPS, *["joint"] * (not self.joints), *["bolt"] * (not self.bolts)))
         if self.joints:
             out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
@@ -480,6 +481,11 @@ class RunRecord(Recorded):
         out |= {"dowel": self.dowels} if self.dowels else {}
         out |= {"source": self.interval_sources} if self.interval_sources else {}
         return out | ({"law": self.alternatives} if self.alternatives else {})
+
+    @property
+    def joint_state(self) -> str:
+        """What the joints have carried before, in words."""
+        return "settled" if self.settled else "first loading"
 
     @property
     def load_names(self) -> tuple[str, ...]:
