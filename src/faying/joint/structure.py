@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, overload
+from typing import Any, Literal, overload
 
 from faying.joint.bolted import BoltedStructure
 from faying.joint.state import State, solve_structure
@@ -59,13 +59,7 @@ class Structure(BoltedStructure):
     @checked_call
     def solve(
         self,
-        preload: float
-        | str
-        | Mapping[str, float | str]
-        | None
-        | list[str]
-        | list[float]
-        | list[Mapping[str, float | str]] = None,
+        preload: float | str | Mapping[str, float | str] | list[Any] | None = None,
         *,
         modes: int = 10,
         damping: Literal["hysteretic", "viscous"] = "hysteretic",
