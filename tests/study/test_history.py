@@ -1,6 +1,7 @@
 """Studies whose preloads fall, and joints that carried the greatest preload before."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -56,6 +57,13 @@ def test_a_preload_that_falls_comes_after_the_greatest(back, result, tmp_path):
     best, low, high = result.interval.best, result.interval.low, result.interval.high
     assert best[2] / best[0] == pytest.approx(down / up, rel=2e-3)
     assert np.all((low[2] < best[2]) & (best[2] < high[2]))
+
+
+def test_tables_name_loads_in_kilonewtons(result):
+    """Without a history as they always have; the labels of files keep their prefix."""
+    small = replace(result, loads=np.array([500.0, 9e3, 4e3]), carried=None)
+    assert small.load_names == ("0.5 kN", "9 kN", "4 kN")
+    assert small.labels()["load"] == ("500 N", "9 kN", "4 kN")
 
 
 def test_both_engines_print_one_history(back, result):

@@ -353,7 +353,7 @@ class RunRecord(Recorded):
         rows = {"joints": joints, "bolts": listed(self.bolts)} if self.joints else {"parts": listed(self.parts)}
         rows |= {"dowels": listed(self.dowels)} if self.dowels else {}
         few = list(range(len(self.loads))) if len(self.loads) <= MAX_LOADS else [0, len(self.loads) // 2, -1]
-        words = self.load_names
+        words = self._labels_of_loads
         between = self.free is not None and self.bonded is not None
         rows["frequencies"] = f"[Hz] {' | '.join(['free'] * between + [words[k] for k in few] + ['bonded'] * between)}"
         shown = self.frequencies.shape[1] if self.frequencies.shape[1] <= MAX_MODES else MAX_MODES - 1
@@ -475,7 +475,7 @@ class RunRecord(Recorded):
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
-        out: dict[str, Any] = {"load": self.load_names, "mode": np.arange(1, self.frequencies.shape[1] + 1)}
+        out: dict[str, Any] = {"load": self._labels_of_loads, "mode": np.arange(1, self.frequencies.shape[1] + 1)}
         out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         out |= {"part": self.parts} if self.parts else {}
         out |= {"dowel": self.dowels} if self.dowels else {}
@@ -490,9 +490,17 @@ class RunRecord(Recorded):
     @property
     def load_names(self) -> tuple[str, ...]:
         """What tables call the loads, each once: "4 kN after 12 kN" where a preload has fallen."""
-        if self.settled or self.carried is None:
-            return load_texts(self.loads)
-        return each_once(load_name(*pair) for pair in zip(self.loads, self.carried, strict=True))
+        carried = self.carried if self.has_history and self.carried is not None else np.zeros(len(self.loads))
+        return each_once(load_name(*pair) for pair in zip(self.loads, carried, strict=True))
+
+    @property
+    def has_history(self) -> bool:
+        """Whether a preload has fallen, so that names say after which."""
+        return self.carried is not None and not self.settled
+
+    @property
+    def _labels_of_loads(self) -> tuple[str, ...]:
+        return self.load_names if self.has_history else load_texts(self.loads)
 
     @property
     def interval(self) -> Interval | None:
