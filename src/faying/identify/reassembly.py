@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 from faying.answer.run import run
-from faying.case.case import Case
+from faying.case.case import Case, bare
 from faying.case.clearance import Clearance, clearances
 from faying.case.provenance import provenance
 from faying.case.scatter import force_factors
@@ -201,19 +201,7 @@ def reassembled(
     """Predict how far frequencies differ between assemblies of one structure; see `faying.predict`."""
     check_assemblies(study, count)
     tell = report or silent
-    # what a run does beyond modes and their intervals
-    plain = replace(
-        study,
-        modes=replace(study.modes, levels=()),
-        test=None,
-        hammer=None,
-        response=None,
-        backbone=None,
-        alternatives=(),
-        load_cases=(),
-        vibrations=(),
-        bolt_sheets=(),
-    )
+    plain = replace(bare(study), modes=replace(study.modes, levels=()), test=None)  # modes and their intervals
     with SampleStore(out, fingerprint(study, count, seed), what=Assemblies.KIND) as store:
         tell("run as modelled", 0, 0)
         result = run(plain)

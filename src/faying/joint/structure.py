@@ -87,7 +87,6 @@ class Structure(BoltedStructure):
             InputError: A preload is missing or not positive, or a part is free to move.
             NotConverged: An iteration stops short.
         """
-        several = isinstance(preload, list)
         states = solve_structure(
             self,
             preload if isinstance(preload, list) else [preload],
@@ -97,4 +96,4 @@ class Structure(BoltedStructure):
             solver=solver,
             engine=engine,
         )
-        return states if several else states[0]
+        return states if isinstance(preload, list) else states[0]

@@ -73,15 +73,16 @@ def preloaded(study: Study, number: int, progress: Progress, *, modes: bool) -> 
     engine = engine_of("reanalysis", case)
     progress.begin(f"preload {study.preloads[number].name}")
     state = engine.preload(number)
-    springs = case.structure.under(state).springs(state.pressures)
+    case = case.under(state)
+    springs = case.structure.springs(state.pressures)
     return preloaded_case(case, state, springs, engine, modes=modes)
 
 
 def preloaded_case(
     case: Case, state: PreloadState, springs: Sequence[Springs[Any]], engine: Engine, *, modes: bool
 ) -> Preloaded:
-    """A case whose preload is known, ready for load cases."""
-    study, structure = case.study, case.structure.under(state)
+    """A case under a preload that is known, ready for load cases."""
+    study, structure = case.study, case.structure
 
     def found(under: Sequence[Springs[Any]]) -> tuple[Array, Any]:
         vibration = engine.vibrate(under)

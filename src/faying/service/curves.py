@@ -155,15 +155,12 @@ def _march(
             return curve, True
         else:
             amplitude = float(np.linalg.norm(cycle.motion[1]))
-            if points and amplitude <= points[-1][0]:  # its shape changed by more than the level
-                level *= step
-                cycle = model.cycle(level, mode)
-                continue
-            points.append((amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping))
-            amplitudes, speeds, slips = np.array(points).T
-            curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
-            if amplitude >= needs(curve):
-                break
+            if not points or amplitude > points[-1][0]:  # else its shape changed by more than the level
+                points.append((amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping))
+                amplitudes, speeds, slips = np.array(points).T
+                curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
+                if amplitude >= needs(curve):
+                    break
         level *= step
         cycle = model.cycle(level, mode)
     return curve, False

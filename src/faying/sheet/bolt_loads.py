@@ -94,7 +94,7 @@ def bolt_loads(
     if not names:
         return {}
     asked = _with_needs(study.load_cases, names)
-    base = preloaded_case(case, state.preload, state.springs, engine, modes=False)
+    base = preloaded_case(case.under(state.preload), state.preload, state.springs, engine, modes=False)
     parted = _parted(asked, names)
     loads = (*asked, *parted.heat.values(), *parted.rest.values())
     mean = answers(base, loads, progress)

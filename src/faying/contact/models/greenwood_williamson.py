@@ -10,6 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.contact.asperity.base import AsperityModel, AsperityResponse, summed_model
+from faying.contact.asperity.hertz import Hertz
+from faying.contact.asperity.jackson_green import JacksonGreen
+from faying.contact.asperity.kogut_etsion import KogutEtsion
 from faying.contact.asperity.unloading import EtsionKligermanKadin
 from faying.contact.law import ContactLaw, Response
 from faying.contact.measured_range import MeasuredRange
@@ -22,7 +25,7 @@ from faying.typing import Array
 # what is summed: heights to this many standard deviations, with this many points on each panel
 HIGHEST, NODES = 8.5, 10
 FARTHEST, NEAREST = 6.0, -3.0
-SUMMITS_UNLOAD = ("kogutetsion", "jacksongreen")  # laws of loading on which the fits of unloading are used
+SUMMITS_UNLOAD = (KogutEtsion, JacksonGreen)  # laws of loading on which the fits of unloading are used
 UNLOADED = 400  # separations of a curve of unloading: ln p over ln k between them to 1e-4
 
 
@@ -123,8 +126,7 @@ class GreenwoodWilliamson(ContactLaw):
 
         None for other asperities.
         """
-        name = self.asperity.lower().replace("-", "").replace("_", "")
-        if name not in ("hertz", *SUMMITS_UNLOAD):
+        if not isinstance(self._asperity, (Hertz, *SUMMITS_UNLOAD)):
             return None
         return Memory.of(self.least_pressure, self.greatest_pressure, self._ratios)
 
@@ -137,7 +139,7 @@ class GreenwoodWilliamson(ContactLaw):
         closures, n = self._closure_at(pressure), len(pressure)
         first = self.at_closure(closures).quantities()
         out = {name: np.full((n, n), np.nan) for name in ("area", "k_n", "energy_n")}
-        if self.asperity.lower() == "hertz":
+        if isinstance(self._asperity, Hertz):
             return {name: np.ones((n, n)) for name in out}
         for after, closure in enumerate(closures):
             heights = weight * np.exp(-((t + closure / self.sigma) ** 2) / 2) / sqrt(2 * pi)
@@ -166,7 +168,7 @@ class GreenwoodWilliamson(ContactLaw):
             "real area above 0.3 of the nominal area": np.asarray(area > 0.3),
             "separation below the mean plane of the summits": np.asarray(d < 0),
         }
-        if self.asperity.lower() == "hertz" and any(m.hardness for m in (self.pair.first, self.pair.second)):
+        if isinstance(self._asperity, Hertz) and any(m.hardness for m in (self.pair.first, self.pair.second)):
             reasons["mean pressure of the contacts above the hardness"] = np.asarray(force > self.pair.hardness * area)
         return Response(
             pressure=np.asarray(force),
