@@ -18,9 +18,6 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
 from faying import Material, solve_asperity  # noqa: E402  the thread limits are read when NumPy is loaded
-from faying.asperity_fe import AsperityResult  # noqa: E402
-from faying.asperity_fe.cases import solve_cases  # noqa: E402
-from faying.asperity_fe.drive import AsperityCase  # noqa: E402
 from faying.numerics.solve import available  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
@@ -51,27 +48,6 @@ def table_1(elements: int, solver: str) -> list[float]:
                 f"  {found.unknowns} unknowns  {found.factorisations} factorisations  {seconds[-1]:6.2f} s"
             )
     return seconds
-
-
-def runner(elements: int, processes: int) -> None:
-    cases = [
-        AsperityCase(
-            R=R * 1e-6,
-            h_a=h_a * 1e-9,
-            cap=material(ratio * 100e9),
-            substrate=material(100e9),
-            displacement=(h_a * 1e-10,),
-            elements=elements,
-        )
-        for ratio in (1.0, 1.5, 2.0)
-        for R, h_a in CAPS
-    ]
-    before, start = os.times(), time.perf_counter()
-    found = solve_cases(cases, processes=processes)
-    after, wall = os.times(), time.perf_counter() - start
-    assert all(isinstance(result, AsperityResult) for result in found)
-    cpu = after.children_user + after.children_system - before.children_user - before.children_system
-    print(f"all {len(cases)} rows by the runner, {processes} processes: {wall:.0f} s on the clock, {cpu:.0f} s of CPU")
 
 
 def against_calculix(elements: int, repeats: int = 3) -> None:
@@ -105,7 +81,6 @@ def main() -> None:
         print(
             f"  a row: median {statistics.median(seconds):.2f} s, most {max(seconds):.2f} s; all {sum(seconds):.1f} s"
         )
-    runner(given.elements, 2)
     if shutil.which("ccx"):
         print("CalculiX, same mesh and steps")
         against_calculix(given.calculix)

@@ -13,8 +13,9 @@ import os
 import numpy as np
 
 from faying import RIGID, Material
-from faying.asperity_fe.cases import solve_cases
+from faying.apart import in_processes
 from faying.asperity_fe.drive import AsperityCase
+from faying.asperity_fe.result import AsperityResult
 
 RATIOS = (1.0, 1.5, 2.0)
 WIDER_RATIOS = (1.0, 1.5, 2.0, 4.0)
@@ -24,6 +25,15 @@ CAPS = ((15e-6, 0.1e-6), (20e-6, 0.75e-6), (40e-6, 3e-6))
 
 def material(ratio: float) -> Material:
     return Material(name="m", E=ratio * 100e9, nu=0.3, yield_strength=355e6)
+
+
+def _solved(number: int, case: AsperityCase) -> tuple[int, AsperityResult]:
+    return number, case.solve()
+
+
+def solved(cases: list[AsperityCase]) -> list[AsperityResult]:
+    """Results of cases, in their order, by all cores."""
+    return [found for _, found in sorted(in_processes(_solved, list(enumerate(cases)), os.cpu_count() or 1))]
 
 
 def computed(elements: int) -> tuple[list[AsperityCase], list]:
@@ -38,7 +48,7 @@ def computed(elements: int) -> tuple[list[AsperityCase], list]:
         for R, h in CAPS
         for e in RATIOS
     ]
-    return cases, solve_cases(cases, progress=lambda done: print(f"{done} of {len(cases)}", end="\r"))
+    return cases, solved(cases)
 
 
 class Sphere:
@@ -128,7 +138,7 @@ def wider(alpha: float, elements: int = 32) -> None:
         AsperityCase(R=R, h_a=h, cap=material(e), substrate=material(1.0), displacement=(top * h,), elements=elements)
         for R, h, top, e in keys
     ]
-    found = solve_cases(spheres + caps, progress=lambda done: print(f"{done} of {len(spheres + caps)}", end="\r"))
+    found = solved(spheres + caps)
     runs = [r.history for r in found]
     n = len(tops)
     sphere = Sphere(WIDER_RATIOS, [runs[i * n : (i + 1) * n] for i in range(len(WIDER_RATIOS))])

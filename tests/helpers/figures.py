@@ -9,7 +9,6 @@ from functools import cache
 import numpy as np
 
 import faying
-from faying.asperity_fe.drive import AsperityCase
 from faying.contact.figure import curves as law_curves
 from faying.distribution import Distribution
 from faying.form.fit import figure as form
@@ -32,7 +31,7 @@ from faying.measured.model import ModelModes
 from faying.measured.modes import ModeSet
 from faying.measured.ring_down import MeasuredBackbone
 from faying.output import report, report_measured
-from faying.output.figures import asperity, sweep
+from faying.output.figures import sweep
 from faying.result import Receptance, backbone, difference, vibration
 from faying.result.backbone import QuasiStaticCheck
 from faying.result.difference import compare_runs
@@ -290,14 +289,6 @@ def found():
     )
 
 
-@cache
-def computed_asperity():
-    steel = faying.Material(name="steel", E=200e9, nu=0.3, yield_strength=355e6)
-    given = {"R": 20e-6, "h_a": 0.75e-6, "cap": steel, "substrate": steel, "displacement": (60e-9, 0.0)}
-    given |= {"elements": 8, "steps": 6}
-    return AsperityCase(**given), faying.solve_asperity(**given)
-
-
 def half_space_contact():
     steel = faying.Material(name="steel", E=200e9, nu=0.3, hardness=2e9)
     pair = faying.ContactPair(steel, steel)
@@ -440,7 +431,6 @@ FIGURES = {
     "halfspace/figure.py:contact_figure": lambda: half_space.contact_figure(half_space_contact()),
     "halfspace/solution.py:plot": lambda: whole(half_space_contact().plot()),
     "measured/figure.py:identified": stabilised,
-    "output/figures/asperity.py:overview": lambda: asperity.overview(*computed_asperity()),
     "output/figures/sweep.py:figure, one axis": lambda: sweep.figure(swept("bolt.left_1.preload=1 kN:5 kN:5")),
     "output/figures/sweep.py:figure, laws": lambda: sweep.figure(swept("law.model=jk,gw,power-law")),
     "output/figures/sweep.py:figure, two axes": lambda: sweep.figure(

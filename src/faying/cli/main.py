@@ -14,7 +14,6 @@ import click
 # command -> (module, one line for `faying --help`)
 COMMANDS = {
     "app": ("app", "Open a page in the browser: scan, geometry, study, run, result."),
-    "asperity": ("scan.asperity", "Press one asperity by finite elements: force, area, stresses."),
     "attach": ("attach", "Add a joint to a model of another solver, in the format of that solver."),
     "backbone": ("backbone", "Frequency and damping of a mode against its amplitude."),
     "bolts": ("bolts", "A sheet for each bolt by VDI 2230: preload, stresses, slip, torque."),

@@ -1,13 +1,19 @@
-"""One computed asperity beside the published laws, and its stresses."""
+"""Two caps of Table 1 with the published laws, and their stresses, as in docs/theory/asperity-fe.md.
 
+Run `python benchmarks/asperity_figure.py FOLDER`.
+"""
+
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from faying.asperity_fe.drive import AsperityCase
+from faying.asperity_fe.plasticity import equivalent
 from faying.asperity_fe.result import AsperityResult
-from faying.materials import RIGID, ContactPair
-from faying.style import WIDE, colour, drawing, new_panels
+from faying.materials import RIGID, ContactPair, Material
+from faying.style import WIDE, colour, drawing, new_panels, save
 
 LAWS = ("KogutEtsion", "JacksonGreen", "LinLin", "ZhaoMaiettaChang", "JK")
 
@@ -57,8 +63,6 @@ def stresses(fig: Any, ax: Any, case: AsperityCase, result: AsperityResult) -> N
     """Draw the von Mises stress over the yield strength of the cap near the contact."""
     from matplotlib.collections import PolyCollection
 
-    from faying.asperity_fe.plasticity import equivalent
-
     field = result.field
     reach = 2.5 * float(np.sqrt(result.history.area.max() / np.pi))
     places = field.nodes + field.displacement
@@ -93,3 +97,14 @@ def overview(case: AsperityCase, result: AsperityResult) -> Any:
     last.set_axis_off()
     last.legend(*drawn[1].get_legend_handles_labels(), loc="center")
     return fig
+
+
+def main(folder: str) -> None:
+    steel = Material(name="steel", E=100e9, nu=0.3, yield_strength=355e6)
+    for name, R, h_a in (("asperity-r40.png", 40e-6, 3e-6), ("asperity-r15.png", 15e-6, 0.1e-6)):
+        case = AsperityCase(R=R, h_a=h_a, cap=steel, substrate=steel, displacement=(0.1 * h_a,))
+        save(overview(case, case.solve()), Path(folder) / name)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
