@@ -14,7 +14,7 @@ from faying.reduction.reduce import Gapped, Reduction
 from faying.reduction.reduced import Variant
 from faying.typing import Array
 
-TOLERANCE = 2e-4  # of a frequency, where what is changed moves one by a thousandth and more
+TOLERANCE = 1e-4  # of a frequency at the loads trained on, where what is changed moves one by a thousandth and more
 
 
 @dataclass(frozen=True, kw_only=True)
