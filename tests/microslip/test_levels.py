@@ -66,6 +66,23 @@ def test_two_masses_agree_with_harmonic_balance(mode, monkeypatch):
         assert damping == pytest.approx(point.damping, rel=0.05)
 
 
+@pytest.mark.parametrize("mode", [0, 1])
+def test_harmonic_balance_goes_on_from_a_cycle(mode):
+    """What it finds does not depend on the cycle that it begins with, and is what the passes find where they settle."""
+    model = leveled(chain([1.0, 0.7], [3.0, 2.0], slider(*IWAN)))
+    cycle = model.cycle(0.05, mode)
+    balance, start = model.beyond(cycle, mode)
+    point = balance.follow(start.amplitude, 0.5, known=[start]).points[-1]
+    alone = Epmc(model=model.slip, mode=mode, harmonics=3, samples=levels.SAMPLES).solve(point.amplitude)
+    assert point.amplitude == pytest.approx(0.5, rel=0.01)
+    assert point.frequency == pytest.approx(alone.frequency, rel=1e-5)
+    assert point.damping == pytest.approx(alone.damping, rel=1e-3)
+    level = point.frequency**2 * np.hypot(*point.coordinates[1:3]).max()
+    again = model.cycle(level, mode)
+    assert again.change < 1e-3
+    assert 2 * np.pi * again.frequency == pytest.approx(point.frequency, rel=2e-3)
+
+
 def test_harmonics_bring_the_damping_nearer_to_harmonic_balance_with_harmonics(monkeypatch):
     """The second mass vibrates near three times the first mode: its third harmonic is large."""
     monkeypatch.setattr(levels, "SAMPLES", 256)

@@ -1,11 +1,15 @@
 """[[vibration]] in a study: what check and run say before anything is solved."""
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 
 import faying
 from faying.study.study import Study
 from tests.helpers import studies
 
+ROOT = Path(__file__).parents[2]
 BASE = """
 [[vibration]]
 psd = [["20 Hz", "0.01 g^2/Hz"], ["80 Hz", "0.04 g^2/Hz"]]
@@ -55,3 +59,24 @@ def test_a_file_of_a_study_belongs_to_it(study):
     plan = Study.read(shaken(study, '[[vibration]]\npsd = "psd.csv"\n'))
     assert (study.parent / "psd.csv") in plan.files
     assert plan.vibrations[0].table.values[1] == pytest.approx(0.04 * 9.80665**2)
+
+
+@pytest.mark.slow
+def test_a_bracket_that_rocks_is_followed_to_where_its_foot_opens(tmp_path):
+    """2 kg under 6 g rms: half of the foot opens and the mode stiffens. The curve by harmonic balance, whose basis is
+    made for its own amplitudes, has 6 % more than the frequency at rest there."""
+    text = (ROOT / "examples/bracket/shaker.toml").read_text()
+    text = text[: text.index('[[vibration]]\nname = "sweep"')].replace("0.2 kg", "2 kg").replace("0.0003", "0.04")
+    text = text.replace('["10 kN", "15 kN"]', '"10 kN"').replace('"../', f'"{ROOT}/examples/')
+    text = text.replace('"bracket.step"', f'"{ROOT}/examples/bracket/bracket.step"')
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    (shaken,) = faying.run(path).vibrations
+    level = shaken.level[1, 0]
+    assert 300 < level < 450
+    curve = faying.backbone(path, amplitude=(1.0, 500.0), rest_damping=0.0)
+    around = level * np.array([0.5, 1.0])
+    frequency, slip = curve.at_acceleration(around)
+    assert shaken.frequency[1, 0] == pytest.approx(frequency.mean(), rel=0.02)
+    drawn = np.interp(np.log(around), np.log(shaken.curve_level[0]), shaken.curve_damping[0])
+    assert drawn - shaken.rest_damping[1, 0] == pytest.approx(slip, rel=0.25)

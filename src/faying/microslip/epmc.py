@@ -53,13 +53,13 @@ class EpmcPoint:
     damping: float
     coordinates: Array
     level: float
-    other_modes: float
-    slipping: float
-    open: float
-    sliding: tuple[Array, ...]
-    opening: tuple[Array, ...]
-    dissipated: tuple[Array, ...]
-    traction: tuple[Array, ...]
+    other_modes: float = 0.0
+    slipping: float = 0.0
+    open: float = 0.0
+    sliding: tuple[Array, ...] = ()
+    opening: tuple[Array, ...] = ()
+    dissipated: tuple[Array, ...] = ()
+    traction: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,6 +84,7 @@ class Epmc:
             where the level is the modal amplitude.
         tolerance: Residual over the elastic forces of the mode at which a point counts as solved.
         most_sliding: Share of the limit of friction that slides at which a curve ends, above 1 for never.
+        newton_steps: After so many without an answer the step of the curve is halved.
 
     Raises:
         InputError: The model has no such mode.
@@ -96,6 +97,7 @@ class Epmc:
     observer: Array | None = None
     tolerance: float = TOLERANCE
     most_sliding: float = ALL_SLIDING
+    newton_steps: int = MAX_NEWTON_STEPS
 
     def __post_init__(self) -> None:
         if not 0 <= self.mode < len(self.model.mass):
@@ -136,13 +138,6 @@ class Epmc:
             damping=0.0,
             coordinates=X,
             level=self.level_of(1.0),
-            other_modes=0.0,
-            slipping=0.0,
-            open=0.0,
-            sliding=(),
-            opening=(),
-            dissipated=(),
-            traction=(),
         )
 
     def solve(self, amplitude: float, known: Sequence[EpmcPoint] = ()) -> EpmcPoint:
@@ -153,7 +148,7 @@ class Epmc:
         z = self._predicted(amplitude, known or [self.first()])
         old, size = np.inf, np.inf
         step: _Accelerated | None = None
-        for _ in range(MAX_NEWTON_STEPS):
+        for _ in range(self.newton_steps):
             left, forces = self._residual(z, amplitude)
             size = float(np.abs(left / self._scales).max())
             if size < self.tolerance:

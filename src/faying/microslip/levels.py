@@ -23,6 +23,7 @@ import numpy as np
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
+from faying.microslip.epmc import Epmc, EpmcPoint
 from faying.microslip.microslip import Microslip
 from faying.microslip.slip_basis import GOOD, unbalanced_forces
 from faying.microslip.slip_model import SlipModel, slip_joints
@@ -60,6 +61,8 @@ MIN_LEFT = 0.25
 MIN_SQUARED = 0.01  # of the squared frequency at rest, below which the joints do not hold the mode: it has no answer
 MAX_DAMPING = 1.0  # a mode that is damped by as much does not vibrate: it has no answer
 MAX_OTHER_ENERGY = 10.0  # of the first harmonic, in what corrects it: more of it is no cycle of this mode
+BALANCE = 1e-5  # residual over the elastic forces of a mode, and twice the error of its damping ratio
+BALANCE_STEPS = 12  # of Newton: what has an answer takes 5 to 10
 MIN_SHARE = 1 / 64  # of a change of the secant stiffnesses, below which the mode has no answer at a level
 
 
@@ -89,6 +92,7 @@ class LevelCycle:
         frequency: [Hz]; NaN, as damping and error, where there is no answer.
         damping: ratio of slip [-].
         error: of the damping, over it [-].
+        change: of the damping in the last pass, over it [-]: a part of the error.
         motion: Fourier coefficients of the coordinates (1 + 2H, m) [m] in the last pass.
         traction: those of the tractions of each joint (1 + 2H, q, 3) [Pa] under that motion.
         at_rest: whether its joints soften so little that it keeps its motion at rest.
@@ -97,6 +101,7 @@ class LevelCycle:
     frequency: float
     damping: float
     error: float
+    change: float
     motion: Array
     traction: tuple[Array, ...]
     at_rest: bool
@@ -143,7 +148,7 @@ class LevelModel:
         speeds, shapes = self.modes
         number += self.rigid
         speed, shape = float(speeds[number]), shapes[:, number]
-        rest, damping, error, softened = shape, 0.0, 0.0, (speeds, shapes)
+        rest, damping, change, softened = shape, 0.0, 0.0, (speeds, shapes)
         motion = np.zeros((1 + 2 * HARMONICS, len(shape)))
         secants = [np.zeros_like(joint.at_rest[1]) for joint in self.slip.joints]
         near, share = 0.0, 1.0
@@ -155,13 +160,13 @@ class LevelModel:
             cycles = forces.cycles
             lost = sum(float(j.weights @ c.dissipated) for j, c in zip(self.slip.joints, cycles, strict=True))
             before, damping = damping, max(lost, 0.0) / (2 * np.pi * speed**2 * amplitude**2)
-            error = abs(damping - before) / damping if damping > 0 else 0.0
+            change = abs(damping - before) / damping if damping > 0 else 0.0
             wanted, squared = self._secants(motion, cycles), speed**2
             # change of the squared frequency, to first order
             softer = sum(j.work(c, motion[1]) for j, c in zip(self.slip.joints, wanted, strict=True)) / amplitude**2
             at_rest = done == 0 and abs(softer) < SLIGHT * squared
             if at_rest:
-                speed, error = float(np.sqrt(squared + softer)), abs(softer) / squared
+                speed, change = float(np.sqrt(squared + softer)), abs(softer) / squared
                 break
             before_missed, missed = missed, _diagonals(wanted) - _diagonals(secants)
             if before_missed is not None:
@@ -171,21 +176,42 @@ class LevelModel:
             least = max(MIN_LEFT * squared, MIN_SQUARED * float(speeds[number]) ** 2)
             found = self._towards(wanted, secants, rest, least=least, share=share)
             if found is None or damping > MAX_DAMPING or not self._mostly_first(motion):
-                speed = damping = error = np.nan
+                speed = damping = change = np.nan
                 break
             secants, softened, like = found
             speed, shape = float(softened[0][like]), softened[1][:, like]
-            if abs(speed**2 - squared) < TOLERANCE * squared and error < 10 * TOLERANCE:
+            if abs(speed**2 - squared) < TOLERANCE * squared and change < 10 * TOLERANCE:
                 break
         lower = max(1 - (speed / float(speeds[number])) ** 2, 0.0)
-        error += ERROR_OF_SHAPE * float(np.sqrt(lower)) + ERROR_OF_NEAR_MODE * near + ERROR_OF_LAG * damping
+        shape_error = ERROR_OF_SHAPE * float(np.sqrt(lower))
+        error = change + shape_error + ERROR_OF_NEAR_MODE * near + ERROR_OF_LAG * damping
         return LevelCycle(
             frequency=speed / (2 * np.pi),
             damping=damping,
             error=min(error, 1.0) if np.isfinite(speed) else np.nan,
+            change=change,
             motion=marched,
             traction=tuple(cycle.traction for cycle in cycles),
             at_rest=at_rest,
+        )
+
+    def beyond(self, last: LevelCycle, number: int) -> tuple[Epmc, EpmcPoint]:
+        """The curve of a mode by harmonic balance, and a cycle as a point of it, to go on where passes do not settle.
+
+        Newton follows edges of joints that open and close, at ten times the cost of a level.
+        """
+        epmc = Epmc(
+            model=self.slip,
+            mode=self.rigid + number,
+            harmonics=HARMONICS,
+            samples=SAMPLES,
+            tolerance=BALANCE,
+            newton_steps=BALANCE_STEPS,
+        )
+        amplitude = float(np.linalg.norm(last.motion[1]))
+        speed = 2 * np.pi * last.frequency
+        return epmc, EpmcPoint(
+            amplitude=amplitude, frequency=speed, damping=last.damping, coordinates=last.motion, level=amplitude
         )
 
     def _towards(

@@ -17,7 +17,8 @@ from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
-from faying.microslip.levels import SPRINGS, LevelModel, level_basis, level_model
+from faying.microslip.epmc import EpmcPoint
+from faying.microslip.levels import SPRINGS, LevelCycle, LevelModel, level_basis, level_model
 from faying.microslip.microslip import Microslip
 from faying.service.mode_curve import ModeCurve
 from faying.typing import Array
@@ -29,6 +30,7 @@ STEEP = 2.0  # slip that grows by more than this power of a step asks for smalle
 FINEST_STEP = 1.15  # the smallest: two blocks that begin to slide as a whole have 90 times the damping over a step of 2
 SLIGHT = 0.1  # of the damping at rest: a curve that begins with more slip goes down first, in steps of
 DOWN = 8.0
+UNSETTLED = 0.01  # change of the damping in the last pass above which no balance begins with a cycle
 MOST_DOWN = 6  # at most so many of them
 BASIS = (1.0, 0.25, 0.0625)  # of the level with the greatest damping at rest, at one of which the basis is made
 NOTHING = 1e-3  # of the level of the mode that is shaken most: modes below it are taken as at rest
@@ -139,6 +141,7 @@ def _march(
     step: from level to level.
     """
     points: list[tuple[float, float, float]] = []
+    last: LevelCycle | None = None
     level = LOWEST * needs(curve) * scale
     cycle = model.cycle(level, mode)
     for _ in range(MOST_DOWN):
@@ -152,15 +155,47 @@ def _march(
             level /= step
             step = np.sqrt(step)
         elif not np.isfinite(cycle.frequency):
-            return curve, True
+            return _balanced(model, mode, last, curve, needs, moved)
         else:
             amplitude = float(np.linalg.norm(cycle.motion[1]))
             if not points or amplitude > points[-1][0]:  # else its shape changed by more than the level
                 points.append((amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping))
-                amplitudes, speeds, slips = np.array(points).T
-                curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
+                curve = _through(points, curve)
+                last = cycle if cycle.change < UNSETTLED else last
                 if amplitude >= needs(curve):
                     break
         level *= step
         cycle = model.cycle(level, mode)
     return curve, False
+
+
+def _balanced(
+    model: LevelModel,
+    mode: int,
+    last: LevelCycle | None,
+    curve: ModeCurve,
+    needs: Callable[[ModeCurve], float],
+    moved: float,
+) -> tuple[ModeCurve, bool]:
+    """Go on from the last cycle that settled, by harmonic balance; whether the curve ends before what is needed."""
+    if last is None:
+        return curve, True
+    epmc, start = model.beyond(last, mode)
+    rows = zip(curve.amplitudes, curve.speeds, curve.slips, strict=True)
+    points = [row for row in rows if row[0] <= start.amplitude]
+    grown = [curve]
+
+    def take(point: EpmcPoint) -> str | None:
+        points.append((point.amplitude, point.frequency * moved, point.damping))
+        grown[0] = _through(points, curve)
+        return "all that is needed" if point.amplitude >= needs(grown[0]) else None
+
+    found = epmc.follow(start.amplitude, needs(curve), known=[start], keep=take)
+    farther = points[-1][0] > curve.amplitudes[-1]
+    return grown[0] if farther else curve, found.code not in ("basis", "amplitude")
+
+
+def _through(points: Sequence[tuple[float, float, float]], curve: ModeCurve) -> ModeCurve:
+    """A curve through amplitudes, speeds and ratios of slip."""
+    amplitudes, speeds, slips = np.array(points).T
+    return replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)

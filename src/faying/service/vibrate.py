@@ -430,10 +430,11 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
         )
         out.append(Note(code="vibration-band", text=text))
     level = found["level"][1]
+    rms = " rms" if excitation.kind == "random" else ""
     for k in np.flatnonzero(CURVE_REACH[excitation.kind] * level > reach).tolist():
         text = (
-            f"{what}: mode {k + 1} reaches {level[k]:.3g} m/s2, its curve ends at {reach[k]:.3g} m/s2; beyond, its "
-            "joints open or slide so far that the mode alone has no cycle; frequency and damping stay as they are "
+            f"{what}: mode {k + 1} reaches {level[k]:.3g} m/s2{rms}, its curve ends at {reach[k]:.3g} m/s2; beyond, no "
+            "cycle of the mode alone is found, as its joints open or slide; frequency and damping stay as they are "
             "there, which may be far off"
         )
         out.append(Note(code="vibration-beyond", text=text))
