@@ -109,7 +109,7 @@ def test_draws_of_waves_hold_the_change_of_mode_1(outcome, tmp_path):
     found = faying.sweep(EXAMPLE / "study.toml", axes, tmp_path / "draws.nc", tolerance=1e-4).frequencies
     ours = np.array(outcome[0]["frequencies"]["values"])
     assert found[0] == pytest.approx(ours, rel=2e-4)  # the draw that the study names
-    slopes = np.array([np.polyfit(loads, one[:, c["modes"][0][0]], 1)[0] for one in found])
+    slopes = np.array([np.polyfit(loads, one[:, c["modes"]["values"][0][0]], 1)[0] for one in found])
     test = np.polyfit(loads, np.array(c["frequencies"]["values"]), 1)[0][0]
     assert slopes.min() < test < slopes.max()
 

@@ -141,16 +141,23 @@ def test_waves_are_assumed_where_nothing_is_said(coarse, assumed):
     assert "flat faces" not in " ".join(assumed.warnings)
 
 
+def are_among(few, many, tolerance):
+    """Whether each of some frequencies (load, m) is another one of more (load, n)."""
+    apart = np.abs(few[..., None] / many[:, None] - 1)
+    return apart.min(axis=-1).max() < tolerance and all(len(set(k)) == len(k) for k in apart.argmin(axis=-1).tolist())
+
+
 @pytest.mark.slow
 def test_a_draw_of_the_band_is_that_of_a_full_run(coarse, assumed):
     """The frequencies with waves from the small basis, against the same waves given as a form."""
     form = Form(waviness=replace(ASSUMED, seed=1))
-    full = run(replace(coarse, joints=(replace(coarse.joints[0], form=form),)))
-    assert assumed.wave_frequencies[1] == pytest.approx(full.frequencies, rel=TOLERANCE)
+    more = replace(coarse.modes, count=8)  # the draw follows modes of flat faces, which may be higher ones there
+    full = run(replace(coarse, joints=(replace(coarse.joints[0], form=form),), modes=more))
+    assert are_among(assumed.wave_frequencies[1], full.frequencies, TOLERANCE)
     # the study has said which draw: the others make its interval
     assert np.array_equal(full.wave_frequencies[1], full.frequencies)
     # from another basis, made to an estimated error of 2e-4
-    assert full.wave_frequencies == pytest.approx(assumed.wave_frequencies, rel=1e-3)
+    assert all(are_among(*two, 1e-3) for two in zip(assumed.wave_frequencies, full.wave_frequencies, strict=True))
     assert "waves-assumed" not in [note.code for note in full.notes]
 
 
