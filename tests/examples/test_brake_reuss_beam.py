@@ -167,7 +167,7 @@ def test_the_published_frequencies_lie_in_what_is_predicted_before_any_test(fold
 @needs_data
 @pytest.mark.slow
 def test_levels_of_three_bending_modes_are_those_of_harmonic_balance(folder):
-    """Half a per cent of a damping up to 0.3 %, 2 % above; the frequency to a thousandth up to a damping of 2.5 %.
+    """One per cent of a damping up to 0.3 %, 2 % above; the frequency to a thousandth up to a damping of 2.5 %.
 
     The stated error covers every level, also where mode 5 joins mode 3 at twice its frequency: there harmonic balance
     has a third more damping. The frequency is within 2 % of its change from rest up to there.
@@ -193,7 +193,7 @@ def test_levels_of_three_bending_modes_are_those_of_harmonic_balance(folder):
         assert np.all(ratio < found.level_error[0, k, mode - 1] + 2e-3)
         last = curve.acceleration[-1] * (0.55 if curve.code == "other-modes" else 1)
         alone = curve.acceleration[picked[mode]] <= last
-        assert np.all(ratio[alone] < np.where(damping < 3e-3, 5e-3, 0.02)[alone])
+        assert np.all(ratio[alone] < np.where(damping < 3e-3, 1e-2, 0.02)[alone])
         moved = np.abs(found.level_frequencies[0, k, mode - 1] - frequency)[alone]
         assert np.all(moved < 0.02 * np.abs(frequency - curve.linear_frequency)[alone] + 1e-7 * frequency[alone])
         assert np.all((moved / frequency[alone])[damping[alone] < 0.025] < 1e-3)
