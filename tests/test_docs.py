@@ -17,7 +17,16 @@ ROOT = Path(__file__).parent.parent
 SITE = ROOT / "docs" / "generated"  # made by a build of the site
 PAGES = [ROOT / "README.md", *sorted(p for p in (ROOT / "docs").rglob("*.md") if SITE not in p.parents)]
 T_SPECIMEN = "examples/t-specimen/study.toml"
+# how many samples a page asks for, and how many show that its command runs
+FEWER = {"samples": 16, "assemblies": 4, "count": 100}
 ELSEWHERE = (T_SPECIMEN, "examples/plates-and-bolts/")  # minutes long: tests/examples runs them
+
+
+def fewer(text):
+    """A command or a block with small counts of samples."""
+    for name, count in FEWER.items():
+        text = re.sub(rf"\b({name}[ =])(\d+)\b", lambda m, n=count: f"{m[1]}{min(n, int(m[2]))}", text)
+    return text
 
 
 def blocks(page, language):
@@ -65,8 +74,8 @@ def test_commands(page, checkout):
             continue
         if line == "app":  # it serves until it is ended; tests/app has it
             continue
-        # twelve runs are minutes: tests/form/test_waviness.py has the draws
-        if "waviness_seed" in line:
+        # minutes: tests/form/test_waviness.py has the draws, tests/identify small identifications of laws
+        if "waviness_seed" in line or "laws-evidence" in line:
             named, *words = shlex.split(line)
             command = cli.get_command(click.Context(cli), named)
             command.make_context(named, words)  # raises where the words are wrong
@@ -75,7 +84,7 @@ def test_commands(page, checkout):
             assert any(words.startswith("new ") and "lap.toml" in words for words in commands(page))
             continue
         done = subprocess.run(
-            [sys.executable, "-m", "faying", *shlex.split(line)], capture_output=True, text=True, check=False
+            [sys.executable, "-m", "faying", *shlex.split(fewer(line))], capture_output=True, text=True, check=False
         )
         assert done.returncode == 0, f"faying {line}\n{done.stderr}"
     made = [str(path.relative_to(checkout)) for path in checkout.rglob("*") if path.is_file() and path not in before]
@@ -94,7 +103,7 @@ def test_one_folder_holds_the_studies_of_all_pages(checkout):
 @pytest.mark.parametrize("page", CALLED)
 def test_python_blocks(page, checkout):
     for block in blocks(page, "python"):
-        done = subprocess.run([sys.executable, "-c", block], capture_output=True, text=True, check=False)
+        done = subprocess.run([sys.executable, "-c", fewer(block)], capture_output=True, text=True, check=False)
         assert done.returncode == 0, f"{block}\n{done.stderr}"
 
 
