@@ -12,13 +12,14 @@ read back in the tests by a reader of that grammar.
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real, reals
-from faying.decks.keywords import DATA, Block, blocks, elements, interaction, orientations
+from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, members, real, reals
+from faying.decks.keywords import DATA, Block, blocks, interaction, orientations, springs
 from faying.decks.raw import Pretension, RawMesh, index, joined, not_in_file, read_text
 from faying.decks.scope import Items, NumberSpan, Scope, placed, take
 from faying.decks.vocabulary import left_out
@@ -285,10 +286,7 @@ def _pretensions(
         forces = [force for what, force in top.loads if len(pulled) and np.array_equal(_named(what, nodes), pulled)]
         found.append(
             Pretension(
-                text=bolt.text,
-                nodes=np.unique(joined(section)),
-                axis=bolt.axis,
-                force=forces[-1] if forces else None,
+                text=bolt.text, nodes=np.unique(joined(section)), axis=bolt.axis, force=forces[-1] if forces else None
             )
         )
     return tuple(found)
@@ -313,42 +311,28 @@ def decks(deck: JointDeck) -> dict[str, str]:
 
 def spring2(deck: JointDeck) -> str:
     """Write SPRING2 elements, and DASHPOT2 where there are dampers. Raises InputError as `NodePairs.own`."""
-    lines = deck.header("**", deck.damping_note())
-    axes, group = orientations(deck)
-    springs, number = elements(
-        deck, "SPRING2", "SPRING", "JK", deck.pairs.own(deck.stiffness), group, deck.first_element
-    )
-    dashpots: list[str] = []
-    if deck.dampers is not None:
-        dashpots, _ = elements(deck, "DASHPOT2", "DASHPOT", "JC", deck.pairs.own(deck.dampers), group, number)
-    return "\n".join([*lines, *axes, *springs, *dashpots]) + "\n"
+    return springs(deck, deck.damping_note(), deck.dampers)
 
 
 def connector(deck: JointDeck) -> str:
     """Write CONN3D2 elements of type CARTESIAN: component 1 is the normal; loss factors as structural damping."""
-    k, lost = deck.pairs.own(deck.stiffness), deck.pairs.own(deck.loss)
+    k, lost, dampers = deck.own()
     ratio = np.divide(lost, k, out=np.zeros_like(k), where=k != 0)
-    dampers = deck.pairs.own(deck.dampers) if deck.paper and deck.dampers is not None else None
-    note = deck.damping_note() if dampers is not None else "loss factors as structural damping of each component"
-    lines = deck.header("**", note)
+    note = deck.damping_note() if dampers.any() else "loss factors as structural damping of each component"
     axes, group = orientations(deck)
-    lines += axes
+    lines = [*deck.header("**", note), *axes]
     one, two = deck.ends
-    key = [group[:, None], k / np.abs(k).max(), ratio]
-    if dampers is not None:
-        key.append(dampers / np.abs(dampers).max())
+    key = [group, k / np.abs(k).max(), ratio, dampers / max(np.abs(dampers).max(), 1e-300)]
     first, alike = grouped(np.column_stack(key))
-    number = deck.first_element
-    for g, leader in enumerate(first):
+    number = count(deck.first_element)
+    for g, (leader, some) in enumerate(zip(first, members(alike), strict=True)):
         lines.append(f"*ELEMENT,TYPE=CONN3D2,ELSET=JN{g}")
-        for i in np.flatnonzero(alike == g):
-            lines.append(f"{number},{one[i]},{two[i]}")
-            number += 1
+        lines += [f"{next(number)},{one[i]},{two[i]}" for i in some]
         lines += [f"*CONNECTOR SECTION,ELSET=JN{g},BEHAVIOR=JB{g}", "CARTESIAN,", f"JKA{group[leader]},"]
         lines.append(f"*CONNECTOR BEHAVIOR,NAME=JB{g}")
         for c in range(3):
             lines += [f"*CONNECTOR ELASTICITY,COMPONENT={c + 1}", f"{real(k[leader, c], 20)},"]
-            if dampers is not None:
+            if dampers.any():
                 lines += [f"*CONNECTOR DAMPING,COMPONENT={c + 1}", f"{real(dampers[leader, c], 20)},"]
             elif ratio[leader, c]:
                 lines += [f"*CONNECTOR DAMPING,COMPONENT={c + 1},TYPE=STRUCTURAL", f"{real(ratio[leader, c], 20)},"]

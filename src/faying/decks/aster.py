@@ -26,8 +26,7 @@ CELLS = {
 def decks(deck: JointDeck) -> dict[str, str]:
     """Mesh (.mail) and commands (.comm), by name."""
     axes, frame = grouped(deck.axes)
-    k, lost = deck.pairs.own(deck.stiffness), deck.pairs.own(deck.loss)
-    c = np.zeros_like(k) if not deck.paper or deck.dampers is None else deck.pairs.own(deck.dampers)
+    k, lost, c = deck.own()
     part = np.array([[1.0, 0, 0], [0, 1, 1]])  # along the normal, across it
     rows = np.concatenate([np.column_stack([frame, k * p, lost * p, c * p]) for p in part])
     scale = np.maximum(np.abs(rows).max(axis=0), 1e-300)

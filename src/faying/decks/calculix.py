@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from faying.decks.deck import JointDeck, reals
-from faying.decks.keywords import elements, interaction, orientations
+from faying.decks.keywords import interaction, springs
 from faying.decks.raw import Matrices, both_triangles, numbers_of, once, read_dofs, read_text, whole
 from faying.errors import ReadError
 from faying.typing import Index
@@ -61,14 +61,8 @@ def decks(deck: JointDeck) -> dict[str, str]:
 
 def spring2(deck: JointDeck) -> str:
     """Write SPRING2 elements along the normal and the tangents of the face. Raises InputError as `NodePairs.own`."""
-    lines = deck.header(
-        "**",
-        "no damping: CalculiX takes no loss factor for a spring, and a DASHPOTA between coincident nodes gives NaN",
-    )
-    axes, group = orientations(deck)
-    values = deck.pairs.own(deck.stiffness)
-    springs, _ = elements(deck, "SPRING2", "SPRING", "JK", values, group, deck.first_element)
-    return "\n".join([*lines, *axes, *springs]) + "\n"
+    note = "no damping: CalculiX takes no loss factor for a spring, and a DASHPOTA between coincident nodes gives NaN"
+    return springs(deck, note)
 
 
 def contact(deck: JointDeck) -> str:

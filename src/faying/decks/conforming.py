@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import combinations
 
 import numpy as np
 
@@ -72,14 +73,13 @@ def bodies(
         key = keys_of(some, nodes)
         if len(key) < len(skins[face_part[face]]):
             named[face_part[face]].append(key)
-    for k, a in enumerate(names):
-        for b in names[k + 1 :]:
-            met = np.intersect1d(skins[a], skins[b])
-            if len(met) and not np.isin(met, joined([*named[a], *named[b]])).any():
-                pairs.append((a, b))
-                counts.append(len(np.intersect1d(own[a], own[b])))
-                for one, two in ((a, b), (b, a)):
-                    sides[f"{one}.{two}"] = one, among(outer[one], met, nodes)
+    for a, b in combinations(names, 2):
+        met = np.intersect1d(skins[a], skins[b])
+        if len(met) and not np.isin(met, joined([*named[a], *named[b]])).any():
+            pairs.append((a, b))
+            counts.append(len(np.intersect1d(own[a], own[b])))
+            for one, two in ((a, b), (b, a)):
+                sides[f"{one}.{two}"] = one, among(outer[one], met, nodes)
     place = {part: k for k, body in enumerate(bodies_of(names, pairs)) for part in body}
     return Bodies(tuple(pairs), place, tuple(counts), {name: one for name, one in sides.items() if name not in faces})
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import TextWrapper
 
 import numpy as np
 
@@ -153,8 +154,17 @@ class JointDeck:
         return _clean(self.viscous) * self.system.stiffness
 
     def header(self, mark: str, *more: str) -> list[str]:
-        """Comment lines: the facts of the joint and the notes of this form, cut to 100 columns."""
+        """Comment lines: the facts of the joint and the notes of this form."""
         return comments(mark, *self.facts, *more)
+
+    def own(self) -> tuple[Array, Array, Array]:
+        """Stiffness, loss and the JK paper's dampers (p, 3) along the pairs' own axes; InputError as `NodePairs.own`.
+
+        Dampers of 0 where loss factors stand in their place.
+        """
+        k, lost = self.pairs.own(self.stiffness), self.pairs.own(self.loss)
+        dampers = self.dampers if self.paper else None
+        return k, lost, np.zeros_like(k) if dampers is None else self.pairs.own(dampers)
 
     def damping_note(self) -> str:
         """A sentence on the dampers of a form that takes no loss factor."""
@@ -172,17 +182,9 @@ class JointDeck:
 
 
 def comments(mark: str, *texts: str) -> list[str]:
-    """Comment lines after a mark, cut to 100 columns."""
-    out = []
-    for text in texts:
-        line = mark
-        for word in text.split():
-            if len(line) + len(word) > 100:
-                out.append(line)
-                line = mark + "  "
-            line += " " + word
-        out.append(line)
-    return out
+    """Comment lines after a mark, of at most 101 columns."""
+    fold = TextWrapper(101, f"{mark} ", f"{mark}   ", break_long_words=False, break_on_hyphens=False)
+    return [line for text in texts for line in fold.wrap(text)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,6 +234,11 @@ def grouped(values: Array) -> tuple[Index, Index]:
     scale = max(float(np.abs(flat).max()), 1e-300) if flat.size else 1.0
     _, first, group = np.unique(np.round(flat / (scale * SAME)), axis=0, return_index=True, return_inverse=True)
     return first, group.ravel()
+
+
+def members(group: Index) -> list[Index]:
+    """The rows of each group, in their order; group: of each row, as `grouped` counts them."""
+    return np.split(np.argsort(group, kind="stable"), np.cumsum(np.bincount(group))[:-1])
 
 
 def springs_of(blocks: Array, like: Array | None = None) -> list[tuple[int, int, int, int, Array]]:

@@ -3,11 +3,12 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import ContactProperty, JointDeck, grouped, real, reals
+from faying.decks.deck import ContactProperty, JointDeck, grouped, members, real, reals
 from faying.decks.raw import check_included, read_text
 from faying.errors import InputError, ReadError
 from faying.files import named_by
@@ -101,34 +102,28 @@ def orientations(deck: JointDeck) -> tuple[list[str], Index]:
     return lines, group
 
 
-def elements(
-    deck: JointDeck, kind: str, keyword: str, label: str, values: Array, axes: Index, number: int
-) -> tuple[list[str], int]:
-    """Two-node elements of one direction each, equal ones together, and the number after the last.
+def springs(deck: JointDeck, note: str, dampers: Array | None = None) -> str:
+    """Write SPRING2 elements of one direction each, equal ones together, and DASHPOT2 of dampers (p, 3, 3).
 
-    values (p, 3): along the normal and the two tangents; axes: the orientation of each pair.
+    Raises InputError as `NodePairs.own`.
     """
+    lines, axes = orientations(deck)
     one, two = deck.ends
-    lines = []
-    scale = max(float(np.abs(values).max()), 1e-300)
-    for axis in range(3):
-        first, group = grouped(np.column_stack([axes, values[:, axis] / scale]))
-        order = np.argsort(group, kind="stable")
-        starts = np.searchsorted(group[order], np.arange(len(first) + 1))
-        for g, leader in enumerate(first):
-            if values[leader, axis] == 0:
-                continue
-            name = f"{label}{axis + 1}_{g}"
-            lines.append(f"*ELEMENT,TYPE={kind},ELSET={name}")
-            for i in order[starts[g] : starts[g + 1]]:
-                lines.append(f"{number},{one[i]},{two[i]}")
-                number += 1
-            lines += [
-                f"*{keyword},ELSET={name},ORIENTATION=JKA{axes[leader]}",
-                f"{axis + 1},{axis + 1}",
-                real(float(values[leader, axis]), 20),
-            ]
-    return lines, number
+    number = count(deck.first_element)
+    for keyword, label, blocks in (("SPRING", "JK", deck.stiffness), ("DASHPOT", "JC", dampers)):
+        values = np.zeros((len(one), 3)) if blocks is None else deck.pairs.own(blocks)  # along normal and tangents
+        scale = max(float(np.abs(values).max()), 1e-300)
+        for axis in range(3):
+            first, group = grouped(np.column_stack([axes, values[:, axis] / scale]))
+            for g, (leader, some) in enumerate(zip(first, members(group), strict=True)):
+                if values[leader, axis] == 0:
+                    continue
+                name = f"{label}{axis + 1}_{g}"
+                lines.append(f"*ELEMENT,TYPE={keyword}2,ELSET={name}")
+                lines += [f"{next(number)},{one[i]},{two[i]}" for i in some]
+                lines.append(f"*{keyword},ELSET={name},ORIENTATION=JKA{axes[leader]}")
+                lines += [f"{axis + 1},{axis + 1}", real(float(values[leader, axis]), 20)]
+    return "\n".join([*deck.header("**", note), *lines]) + "\n"
 
 
 def interaction(deck: JointDeck) -> tuple[list[str], ContactProperty]:

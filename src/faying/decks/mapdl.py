@@ -10,11 +10,12 @@ takes six constants, each RMORE six more. Not run in MAPDL: the archive is read 
 
 import re
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 
 import numpy as np
 
-from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real, reals
+from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, members, real, reals
 from faying.decks.raw import Pretension, RawMesh, gathered, index, joined, not_in_file, ranged, undoubled
 from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, left_out
 from faying.errors import ReadError
@@ -281,8 +282,8 @@ def _columns(form: str) -> tuple[list[slice], list[slice]]:
     found = re.findall(group, form.lower())
     out: dict[str, list[slice]] = {"i": [], "e": [], "a": []}
     start = 0
-    for count, kind, width in found:
-        for _ in range(int(count)):
+    for times, kind, width in found:
+        for _ in range(int(times)):
             out[kind].append(slice(start, start + int(width)))
             start += int(width)
     return out["i"], out["e"]
@@ -332,21 +333,21 @@ def _real_constants(number: int, values: Array) -> list[str]:
     return [f"R,{number},{rows[0]}", *(f"RMORE,{row}" for row in rows[1:])]
 
 
-def _sets(deck: JointDeck) -> list[tuple[int, Array, np.ndarray]]:
-    """(type, constants of each set, set of each pair) of stiffness and dampers."""
-    out = []
+def _sets(deck: JointDeck) -> list[tuple[int, dict[int, Array], Index]]:
+    """(type, constants by the number of their set, number of the set of each pair) of stiffness and dampers."""
+    out, number = [], deck.first_element
     for kind, blocks in ((TYPE, deck.stiffness), (TYPE + 1, deck.dampers)):
         if blocks is not None:
             first, group = grouped(blocks)
-            out.append((kind, constants(blocks[first]), group))
+            out.append((kind, dict(enumerate(constants(blocks[first]), number)), number + group))
+            number += len(first)
     return out
 
 
 def _notes(deck: JointDeck) -> tuple[str, ...]:
-    solve = "solve with MODOPT,QRDAMP or MODOPT,DAMP: LANB leaves dampers out" if deck.dampers is not None else ""
     return (
         deck.damping_note(),
-        *([solve] if solve else []),
+        *["solve with MODOPT,QRDAMP or MODOPT,DAMP: LANB leaves dampers out"] * (deck.dampers is not None),
         "nodes keep their axes along the global ones (no NROTAT); a face at an angle is in the full 3 x 3 blocks",
     )
 
@@ -355,49 +356,36 @@ def matrix27(deck: JointDeck) -> str:
     """Write MATRIX27 elements as commands."""
     lines = [*deck.header("!", *_notes(deck)), "/PREP7"]
     one, two = deck.ends
-    number, real_set = deck.first_element, deck.first_element
-    for kind, sets, group in _sets(deck):
+    number = count(deck.first_element)
+    for kind, sets, of in _sets(deck):
         lines += _element_type(kind)
-        for k, row in enumerate(sets):
-            lines += _real_constants(real_set + k, row)
+        for label, row in sets.items():
+            lines += _real_constants(label, row)
         lines.append(f"TYPE,{kind}")
-        last = -1
-        for i in np.argsort(group, kind="stable"):
-            if group[i] != last:
-                last = group[i]
-                lines.append(f"REAL,{real_set + last}")
-            lines.append(f"EN,{number},{one[i]},{two[i]}")
-            number += 1
-        real_set += len(sets)
+        for label, some in zip(sets, members(of - min(sets)), strict=True):
+            lines += [f"REAL,{label}", *(f"EN,{next(number)},{one[i]},{two[i]}" for i in some)]
     return "\n".join(lines) + "\n"
 
 
 def archive(deck: JointDeck) -> str:
     """Write the same elements as an archive: ET, RLBLOCK and EBLOCK, for CDREAD,COMB after the model."""
     lines = [*deck.header("!", *_notes(deck)), "/PREP7"]
-    one, two = deck.ends
     sets = _sets(deck)
     for kind, _, _ in sets:
         lines += _element_type(kind, "27")
-    count = sum(len(group) for *_, group in sets)
-    lines += [f"EBLOCK,19,SOLID,{deck.first_element + count - 1},{count}", "(19i10)"]
-    number, real_set = deck.first_element, deck.first_element
-    for kind, rows, group in sets:
-        for i, g in enumerate(group):
-            head = [1, kind, real_set + int(g), 1, 0, 0, 0, 0, 2, 0, number, int(one[i]), int(two[i])]
+    total = sum(len(of) for *_, of in sets)
+    lines += [f"EBLOCK,19,SOLID,{deck.first_element + total - 1},{total}", "(19i10)"]
+    number = count(deck.first_element)
+    for kind, _, of in sets:
+        for label, one, two in zip(of, *deck.ends, strict=True):
+            head = [1, kind, label, 1, 0, 0, 0, 0, 2, 0, next(number), one, two]
             lines.append("".join(f"{w:10d}" for w in head))
-            number += 1
-        real_set += len(rows)
-    lines.append(f"{-1:10d}")
-    total = sum(len(rows) for _, rows, _ in sets)
-    lines += [f"RLBLOCK,{total},{deck.first_element + total - 1},78,7", "(2i8,6g16.9)", "(7g16.9)"]
-    real_set = deck.first_element
-    for _, rows, _ in sets:
-        for row in rows:
-            words = [f"{v:16.9E}" for v in row]
-            lines.append(f"{real_set:8d}{78:8d}" + "".join(words[:6]))
-            lines += ["".join(words[j : j + 7]) for j in range(6, 78, 7)]
-            real_set += 1
+    rows = {label: row for _, some, _ in sets for label, row in some.items()}
+    lines += [f"{-1:10d}", f"RLBLOCK,{len(rows)},{max(rows)},78,7", "(2i8,6g16.9)", "(7g16.9)"]
+    for label, row in rows.items():
+        words = [f"{v:16.9E}" for v in row]
+        lines.append(f"{label:8d}{78:8d}" + "".join(words[:6]))
+        lines += ["".join(words[j : j + 7]) for j in range(6, 78, 7)]
     return "\n".join([*lines, "FINISH"]) + "\n"
 
 
@@ -414,26 +402,23 @@ def combin14(deck: JointDeck) -> str:
     )
     lines.append("/PREP7")
     one, two = deck.ends
-    for g, leader in enumerate(axes):
+    for g, (leader, some) in enumerate(zip(axes, members(frame), strict=True)):
         n, t1, _ = deck.axes[leader]
         # LOCAL by three points: origin, a point on x, a point in the plane x y
         lines += ["*GET,JKCS,ACTIVE,0,CSYS", "CSYS,0", "*GET,JKN,NODE,0,NUM,MAX"]
         lines += [f"N,JKN+{j},{reals(at)}" for j, at in enumerate((np.zeros(3), n, t1), 1)]
         lines += [f"CS,{TYPE + g},0,JKN+1,JKN+2,JKN+3", f"CSYS,{TYPE + g}"]
-        lines += [f"NROTAT,{node}" for i in np.flatnonzero(frame == g) for node in (one[i], two[i])]
+        lines += [f"NROTAT,{node}" for i in some for node in (one[i], two[i])]
         lines += ["NDELE,JKN+1,JKN+3", "CSYS,JKCS"]
-    number, real_set = deck.first_element, deck.first_element
+    number, sets = count(deck.first_element), count(deck.first_element)
     for axis in range(3):
         kind = TYPE + axis
         lines += [f"ET,{kind},COMBIN14", f"KEYOPT,{kind},2,{axis + 1}", f"TYPE,{kind}"]
         values = np.column_stack([k[:, axis], c[:, axis]])
         first, group = grouped(values / np.maximum(np.abs(values).max(axis=0), 1e-300))
-        for g, leader in enumerate(first):
-            lines += [f"R,{real_set},{reals(values[leader])}", f"REAL,{real_set}"]
-            for i in np.flatnonzero(group == g):
-                lines.append(f"EN,{number},{one[i]},{two[i]}")
-                number += 1
-            real_set += 1
+        for leader, some, label in zip(first, members(group), sets, strict=False):
+            lines += [f"R,{label},{reals(values[leader])}", f"REAL,{label}"]
+            lines += [f"EN,{next(number)},{one[i]},{two[i]}" for i in some]
     return "\n".join(lines) + "\n"
 
 

@@ -109,16 +109,16 @@ def arranged(matrices: Matrices, mesh: Mesh) -> tuple[Any, Any]:
     Raises InputError where the matrices hold other nodes or directions than the mesh.
     """
     K, M, dofs = matrices
-    wanted = np.column_stack([np.repeat(mesh.numbers, 3), np.tile([1, 2, 3], len(mesh.numbers))])
-    place = {(int(node), int(axis)): i for i, (node, axis) in enumerate(dofs)}
-    lost = [(int(node), int(axis)) for node, axis in wanted if (int(node), int(axis)) not in place]
+    wanted = [(node, axis) for node in mesh.numbers.tolist() for axis in (1, 2, 3)]
+    place = {(node, axis): i for i, (node, axis) in enumerate(dofs.tolist())}
+    lost = [one for one in wanted if one not in place]
     if lost or len(dofs) != len(wanted):
         what = f"node {lost[0][0]} direction {lost[0][1]} of the mesh is missing" if lost else "the matrices have more"
         raise InputError(
             f"the matrices have {len(dofs)} unknowns and the mesh {len(wanted)}: {what}; export both from one model, "
             "without supports"
         )
-    order = np.array([place[int(node), int(axis)] for node, axis in wanted])
+    order = [place[one] for one in wanted]
     return K[order][:, order].tocsr(), M[order][:, order].tocsr()
 
 
@@ -127,6 +127,8 @@ def _matrix(path: Path) -> Any:
     kind = kind_of(path)
     if kind not in ALONE:
         raise ReadError(f"{path} does not hold one matrix; give it as .mtx or .npz")
+    if not path.is_file():
+        raise ReadError(f"no file {path}")
     return _market(path) if kind is MARKET else _npz(path)
 
 
@@ -134,8 +136,6 @@ def _npz(path: Path) -> Any:
     """A matrix that SciPy has saved; what SciPy would take without a word is checked."""
     from scipy.sparse import load_npz
 
-    if not path.is_file():
-        raise ReadError(f"no file {path}")
     try:
         _check_members(path)
         found = load_npz(path)
@@ -182,19 +182,13 @@ def _from_entries(path: Path, rows: Index, columns: Index, values: Any, shape: t
 
 def _market(path: Path) -> Any:
     """A real matrix as Matrix Market, coordinate or array; SciPy's own reader crashes on some that are cut short."""
-    text = read_text(path, "matrix") if path.is_file() else ""
-    if not path.is_file():
-        raise ReadError(f"no file {path}")
-    head, _, rest = text.partition("\n")
+    head, _, rest = read_text(path, "matrix").partition("\n")
     words = head.lower().split()
     if len(words) != 5 or words[:2] != ["%%matrixmarket", "matrix"]:
         raise ReadError(f"{path} cannot be read as Matrix Market: it does not begin with %%MatrixMarket matrix")
     _, _, form, kind, symmetry = words
-    if (
-        form not in ("coordinate", "array")
-        or kind not in ("real", "integer")
-        or symmetry not in ("general", "symmetric")
-    ):
+    known = ("coordinate", "array"), ("real", "integer"), ("general", "symmetric")
+    if not all(word in allowed for word, allowed in zip((form, kind, symmetry), known, strict=True)):
         raise ReadError(f"{path} is {form} {kind} {symmetry}; stiffness and mass are real and general or symmetric")
     while rest.startswith("%") or rest[:1] == "\n":
         rest = rest.partition("\n")[2]

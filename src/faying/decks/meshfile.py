@@ -426,23 +426,21 @@ class _Builder:
             if here:
                 found.setdefault(label, {})[part] = here
                 hit |= np.isin(key, keys_of(here, n))
-        if not hit.any():
-            text = (
-                f"the surface {label!r} lies inside its part, on {len(key)} element faces that are not on "
-                "the outside of a "
-                "solid, and is left out; where it is a joint, put the elements on each side into an element set of "
-                "their own, which is then a part with its own face"
-            )
-            self._note("left-out", text)
-        elif not hit.all():
+        if hit.all():
+            return
+        if hit.any():
             found.pop(label)
             text = (
-                f"{np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are not on the "
-                "outside of a solid, "
-                "and it is left out; where elements of one part share the nodes there, put those on each side into an "
-                "element set of their own, which is then a part with its own face"
+                f"{np.count_nonzero(~hit)} of the {len(key)} element faces of {label!r} are not on the outside of a "
+                "solid, and it is left out; where elements of one part share the nodes there, put those"
             )
-            self._note("left-out", text)
+        else:
+            text = (
+                f"the surface {label!r} lies inside its part, on {len(key)} element faces that are not on the outside "
+                "of a solid, and is left out; where it is a joint, put the elements"
+            )
+        text += " on each side into an element set of their own, which is then a part with its own face"
+        self._note("left-out", text)
 
     def _split(
         self, points: Array, blocks: dict[str, Blocks], faces: dict[str, Blocks], face_part: dict[str, str]

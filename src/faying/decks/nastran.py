@@ -10,6 +10,7 @@ with CID since its grids coincide, CELAS2 (K, G1, C1, G2, C2, GE), DMIG with one
 """
 
 import re
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -231,15 +232,10 @@ def card(name: str, *values: Field) -> list[str]:
 
 def cbush(deck: JointDeck) -> str:
     """Write CBUSH elements in coordinate systems of the face: direction 1 is the normal. Raises as `NodePairs.own`."""
-    k, lost = deck.pairs.own(deck.stiffness), deck.pairs.own(deck.loss)
+    k, lost, dampers = deck.own()
     ratio = np.divide(lost, k, out=np.zeros_like(k), where=k != 0)
-    dampers = deck.pairs.own(deck.dampers) if deck.paper and deck.dampers is not None else np.zeros_like(k)
-    note = (
-        deck.damping_note()
-        if dampers.any()
-        else "GE of directions 1, 2, 3; a solver that reads one GE takes that of the normal"
-    )
-    lines = deck.header("$", note)
+    by_loss = "GE of directions 1, 2, 3; a solver that reads one GE takes that of the normal"
+    lines = deck.header("$", deck.damping_note() if dampers.any() else by_loss)
     axes, frame = grouped(deck.axes)
     number = deck.first_element
     for g, leader in enumerate(axes):
@@ -269,36 +265,22 @@ def celas2(deck: JointDeck) -> str:
     Grids must have their displacements in the basic axes (CD = 0). Raises InputError where a spring that couples has a
     loss factor of another sign than its stiffness.
     """
-    note = (
-        deck.damping_note()
-        if deck.paper
-        else "loss factors in GE; springs in the basic axes: leave CD of the grids blank"
-    )
-    lines = deck.header("$", note)
-    number = deck.first_element
-    grids = deck.ends
+    by_loss = "loss factors in GE; springs in the basic axes: leave CD of the grids blank"
+    lines = deck.header("$", deck.damping_note() if deck.paper else by_loss)
+    number, grids = count(deck.first_element), deck.ends
     lost = springs_of(deck.loss, deck.stiffness)
     for (a, c, b, d, values), (*_, loss) in zip(springs_of(deck.stiffness), lost, strict=True):
         for i in np.flatnonzero((values != 0) | (loss != 0)):
             if values[i] == 0:
                 raise InputError("a spring with loss but no stiffness has no loss factor; take matrix or dmig")
             factor = 0.0 if deck.paper else float(loss[i] / values[i])
-            lines += card(
-                "CELAS2",
-                number,
-                float(values[i]),
-                int(grids[a][i]),
-                c + 1,
-                int(grids[b][i]),
-                d + 1,
-                *([factor] if factor else []),
-            )
-            number += 1
+            ends = int(grids[a][i]), c + 1, int(grids[b][i]), d + 1
+            lines += card("CELAS2", next(number), float(values[i]), *ends, *([factor] if factor else []))
     if deck.paper and deck.dampers is not None:
         for a, c, b, d, values in springs_of(deck.dampers):
             for i in np.flatnonzero(values):
-                lines += card("CDAMP2", number, float(values[i]), int(grids[a][i]), c + 1, int(grids[b][i]), d + 1)
-                number += 1
+                ends = int(grids[a][i]), c + 1, int(grids[b][i]), d + 1
+                lines += card("CDAMP2", next(number), float(values[i]), *ends)
     return "\n".join(lines) + "\n"
 
 

@@ -78,21 +78,17 @@ def read(path: Path) -> RawMesh:
             f"nodes of data set 2411 name the export system {', '.join(map(str, sorted(exported)))}; the format gives "
             "their places in the axes of the part, and so they are taken; check the shape"
         )
-    faces: dict[str, list[list[int]]] = {}
     for name, (elements, _) in groups.items():
         notes += not_in_file(f"the group {name!r}", "elements", elements, known_elements)
-        on = [shells[e] for e in elements if e in shells]
-        if on:
-            faces[name] = on
-    where = [points[n] for n in points]
+    faces = {name: [shells[e] for e in elements if e in shells] for name, (elements, _) in groups.items()}
     bodies = {name: index(e for e in elements if e not in shells) for name, (elements, _) in groups.items()}
     return RawMesh(
         numbers=index(points),
-        points=np.array(where).reshape(-1, 3),
+        points=np.array(list(points.values())).reshape(-1, 3),
         elements=gathered(solids),
         element_sets={name: some for name, some in bodies.items() if len(some)},
         node_sets={name: index(nodes) for name, (_, nodes) in groups.items() if nodes},
-        face_elements={name: face_blocks(some) for name, some in faces.items()},
+        face_elements={name: face_blocks(some) for name, some in faces.items() if some},
         extra=index([*extra, *(n for nodes in shells.values() for n in nodes)]),
         notes=tuple(notes),
     )

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from faying.fe.face_map import barycentric
 from faying.fe.mesh import Mesh
 from faying.fe.sides import face_centre, skin, triangles_of
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, PartFacts, point_of, shape_of
@@ -59,16 +60,26 @@ def _part(mesh: Mesh, part: str) -> PartFacts:
 
 def distance_to(point: Array, corners: Array) -> float:
     """Distance [m] of a point to the nearest of some triangles (t, 3, 3)."""
-    a, b, c = corners.transpose(1, 0, 2)
-    normal = np.cross(b - a, c - a)
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    above = np.einsum("ti,ti->t", point - a, normal)
-    foot = point - above[:, None] * normal
-    inside = np.ones(len(a), dtype=bool)
-    least = np.full(len(a), np.inf)
-    for start, end in ((a, b), (b, c), (c, a)):
-        along = end - start
-        inside &= np.einsum("ti,ti->t", np.cross(along, foot - start), normal) >= 0
-        share = np.clip(np.einsum("ti,ti->t", point - start, along) / np.einsum("ti,ti->t", along, along), 0, 1)
-        least = np.minimum(least, np.linalg.norm(point - start - share[:, None] * along, axis=1))
-    return float(np.where(inside, np.abs(above), least).min())
+    return float(nearest_places(point, corners)[1].min())
+
+
+def nearest_places(point: Array, corners: Array) -> tuple[Array, Array]:
+    """Place on each triangle (t, 3, 3) nearest to a point (3,): weights of its corners (t, 3), distance [m] (t,)."""
+    foot = barycentric(corners, point)
+    foot[(foot < 0).any(axis=1)] = (
+        1.0,
+        0.0,
+        0.0,
+    )  # beside the triangle; a side holds this corner, too
+    places = [foot]
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        along = corners[:, second] - corners[:, first]
+        length = np.einsum("tx,tx->t", along, along)
+        way = np.einsum("tx,tx->t", point - corners[:, first], along)
+        share = np.clip(way / np.where(length > 0, length, 1.0), 0.0, 1.0)
+        places.append(np.zeros_like(foot))
+        places[-1][:, first], places[-1][:, second] = 1 - share, share
+    weights = np.stack(places, axis=1)
+    away = np.linalg.norm(weights @ corners - point, axis=2)
+    best = np.arange(len(corners)), away.argmin(axis=1)
+    return weights[best], away[best]

@@ -1,6 +1,6 @@
 """A hammer test against a model: MAC, paired modes, frequencies, damping, FRFs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from faying.text import csv_text
 from faying.typing import Array, Complex, Index, Mask
 
 ALIKE = 0.9
+HEAD = "test mode,test [Hz],model mode,model [Hz],difference [%],MAC,test loss,interval,model loss"
 CSV_HEAD = (
     "test mode,test frequency [Hz],test loss factor [-],loss low [-],loss high [-],model mode,model frequency [Hz],"
     "model loss factor [-],frequency difference [-],MAC [-]"
@@ -90,18 +91,7 @@ class ModalComparison(Summary):
 
     def rows(self) -> list[list[str]]:
         """One row per mode of the test, with its partner where there is one; then the model's modes without."""
-        head = [
-            "test mode",
-            "test [Hz]",
-            "model mode",
-            "model [Hz]",
-            "difference [%]",
-            "MAC",
-            "test loss",
-            "interval",
-            "model loss",
-        ]
-        out = [head]
+        out = [HEAD.split(",")]
         for t, (f, loss) in enumerate(zip(self.test.frequencies, self.test.loss_factors, strict=True)):
             span = self.test.loss_interval
             interval = "-" if span is None else f"{span[t, 0]:.1e} .. {span[t, 1]:.1e}"
@@ -287,15 +277,7 @@ def _overlay(
         notes.append("no FRF is between points that have a node; FRFs are not compared")
         return None, None, None, None
     outputs, inputs = tuple(frf.outputs[k] for k in o), tuple(frf.inputs[k] for k in i)
-    shared = FRF(
-        frequency=frf.frequency,
-        values=frf.values[np.ix_(o, i)],
-        outputs=outputs,
-        inputs=inputs,
-        quantity=frf.quantity,
-        positions=frf.positions,
-        source=frf.source,
-    )
+    shared = replace(frf, values=frf.values[np.ix_(o, i)], outputs=outputs, inputs=inputs, coherence=None)
     ends = [
         (np.array([places[d.point] for d in side]), points.transform.directions([d.axis() for d in side]))
         for side in (outputs, inputs)

@@ -76,9 +76,7 @@ def mac_map(ax: Any, comparison: ModalComparison) -> Any:
     for t, m in comparison.pairs:
         ax.add_patch(Rectangle((m - 0.5, t - 0.5), 1, 1, fill=False, edgecolor=COLOURS[1], lw=1.8))
     ax.set_xticks(
-        range(table.shape[1]),
-        [f"{k + 1}: {f:.0f}" for k, f in enumerate(comparison.model.frequencies)],
-        rotation=90,
+        range(table.shape[1]), [f"{k + 1}: {f:.0f}" for k, f in enumerate(comparison.model.frequencies)], rotation=90
     )
     ax.set_yticks(range(table.shape[0]), [f"{k + 1}: {f:.0f}" for k, f in enumerate(comparison.test.frequencies)])
     ax.set(
@@ -96,11 +94,8 @@ def frf_overlay(ax: Any, comparison: ModalComparison, output: int = 0, input: in
     if frf is None or predicted is None or comparison.frac is None:
         ax.text(0.5, 0.5, "no FRF between points of the model", ha="center", va="center")
         return ax
-    label = (
-        "model, full response"
-        if comparison.full is not None and comparison.full[output, input]
-        else "model, elastic modes"
-    )
+    full = comparison.full is not None and comparison.full[output, input]
+    label = f"model, {'full response' if full else 'elastic modes'}"
     ax.semilogy(frf.frequency, np.abs(frf.values[output, input]), color="0.45", lw=1.2, label="test")
     ax.semilogy(frf.frequency, np.abs(predicted[output, input]), color=COLOURS[0], lw=1.0, label=label)
     _frf_axes(ax, frf, output, input)

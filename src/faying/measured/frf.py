@@ -31,9 +31,13 @@ class Dof(NamedTuple):
     def __str__(self) -> str:
         return f"{self.point}{self.direction if self.direction.startswith('-') else f'+{self.direction}'}"
 
+    def split(self) -> tuple[int, str]:
+        """Sign of the direction, and the direction without it."""
+        return (-1, self.direction[1:]) if self.direction.startswith("-") else (1, self.direction)
+
     def axis(self) -> Array:
         """Unit vector of the direction (3,). InputError for rotations and where no direction is stated."""
-        sign, name = (-1.0, self.direction[1:]) if self.direction.startswith("-") else (1.0, self.direction)
+        sign, name = self.split()
         if name not in AXES:
             raise InputError(
                 f"point {self.point} has the direction {self.direction!r}, which is not a translation; give x, y or z, "

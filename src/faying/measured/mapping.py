@@ -9,6 +9,7 @@ import numpy as np
 
 from faying.columns import read_columns
 from faying.errors import InputError, ReadError
+from faying.geometry.mesh_facts import nearest_places
 from faying.measured.frf import Position
 from faying.typing import Array, Index
 
@@ -154,43 +155,11 @@ def _on_triangles(points: Array, cloud: Array, nearest: Index, triangles: Index)
         near = np.flatnonzero(np.linalg.norm(middle - point, axis=1) - radius < best)
         if not len(near):
             continue
-        share = _barycentric(point, abc[near])
-        distance = np.linalg.norm(np.einsum("tc,tcx->tx", share, abc[near]) - point, axis=1)
+        share, distance = nearest_places(point, abc[near])
         found = int(np.argmin(distance))
         if distance[found] < best - 1e-9 * float(radius[near[found]]):
             corners[k], weights[k] = triangles[near[found]], share[found]
     return corners, weights
-
-
-def _barycentric(point: Array, abc: Array) -> Array:
-    """Weights (t, 3) of the corners (t, 3, 3) at the place on each triangle that is nearest to the point (3,)."""
-    a, b, c = abc[:, 0], abc[:, 1], abc[:, 2]
-    out = np.zeros((len(abc), 3))
-    best = np.full(len(abc), np.inf)
-    for first, second in ((0, 1), (1, 2), (2, 0)):
-        along = abc[:, second] - abc[:, first]
-        length = np.einsum("tx,tx->t", along, along)
-        way = np.einsum("tx,tx->t", point - abc[:, first], along)
-        t = np.clip(way / np.where(length > 0, length, 1.0), 0.0, 1.0)
-        distance = np.linalg.norm(abc[:, first] + t[:, None] * along - point, axis=1)
-        nearer = distance < best
-        best = np.where(nearer, distance, best)
-        share = np.zeros_like(out)
-        share[:, first], share[:, second] = 1 - t, t
-        out[nearer] = share[nearer]
-    # inside, where the foot of the perpendicular falls into the triangle
-    normal = np.cross(b - a, c - a)
-    area = np.einsum("tx,tx->t", normal, normal)
-    flat = area > 0
-    inner = (
-        np.stack(
-            [np.einsum("tx,tx->t", np.cross(q - p, point - p), normal) for p, q in ((b, c), (c, a), (a, b))], axis=1
-        )
-        / np.where(flat, area, 1.0)[:, None]
-    )
-    inside = flat & (inner >= 0).all(axis=1)
-    out[inside] = inner[inside]
-    return out
 
 
 POINTS = "give a CSV table point,x [mm],y [mm],z [mm]"

@@ -75,11 +75,10 @@ def pair_frequencies(test: Any, model: Any, visibility: Any, *, threshold: float
     cost = np.where(barred, 1e6, cost)
     spare = np.full((len(cost), len(cost)), alone)
     rows, columns = linear_sum_assignment(np.concatenate([cost, spare], axis=1))
-    out = np.full(len(cost), -1)
-    for row, column in zip(rows, columns, strict=True):
-        if column < cost.shape[1]:
-            out[row] = column
-    return out.astype(np.int64)
+    out = np.full(len(cost), -1, dtype=np.int64)
+    paired = columns < cost.shape[1]
+    out[rows[paired]] = columns[paired]
+    return out
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,6 +146,5 @@ def pair_modes(
     allowed = (mac >= least_mac) & (shift <= greatest_shift)
     gain = np.where(allowed, mac - weight * shift / greatest_shift, 0.0)
     rows, columns = linear_sum_assignment(gain, maximize=True)
-    return np.array([(t, m) for t, m in zip(rows, columns, strict=True) if allowed[t, m]], dtype=np.int64).reshape(
-        -1, 2
-    )
+    kept = allowed[rows, columns]
+    return np.column_stack([rows[kept], columns[kept]])

@@ -210,13 +210,7 @@ def ring_down(
 
 @checked_call
 def ring_down_of_frf(
-    frf: FRF,
-    *,
-    impulse: float,
-    band: tuple[float, float],
-    output: int = 0,
-    input: int = 0,
-    cycles: int = CYCLES,
+    frf: FRF, *, impulse: float, band: tuple[float, float], output: int = 0, input: int = 0, cycles: int = CYCLES
 ) -> MeasuredBackbone:
     """Frequency and damping along the decay that a hammer's FRF stands for.
 

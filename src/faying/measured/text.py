@@ -187,12 +187,7 @@ def _pair(
     else:
         factor = _reference(decibels[1], cells[first], quantity, where, notes)
     return Pair(
-        first=first,
-        second=second,
-        polar=True,
-        scales=(factor, 1.0),
-        decibels=decibels is not None,
-        turn=turns[angle],
+        first=first, second=second, polar=True, scales=(factor, 1.0), decibels=decibels is not None, turn=turns[angle]
     )
 
 
@@ -220,11 +215,9 @@ def _factor(cell: Cell, quantity: str, where: str, notes: list[str]) -> float:
     factor = unit_factor(cell.unit, DIMENSIONS[quantity] + "/N")
     if factor is None:
         others = [name for name, unit in DIMENSIONS.items() if unit_factor(cell.unit, unit + "/N") is not None]
-        hint = (
-            f"this is a unit of {others[0]}, give that as the quantity"
-            if others
-            else f"write for example {DIMENSIONS[quantity]}/N"
-        )
+        hint = f"write for example {DIMENSIONS[quantity]}/N"
+        if others:
+            hint = f"this is a unit of {others[0]}, give that as the quantity"
         raise ReadError(f'{where}: "{cell.unit}" of the column "{cell.text}" is not a unit of {quantity}; {hint}')
     return factor
 

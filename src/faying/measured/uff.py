@@ -19,7 +19,7 @@ import numpy as np
 from faying.data_sets import check_data_sets
 from faying.errors import InputError, ReadError
 from faying.measured.frf import Dof, Position
-from faying.measured.uff_systems import NodalShape, UffSystem, export_note, shapes_2414, systems
+from faying.measured.uff_systems import UffSystem, export_note, of_pole, shapes_2414, systems
 from faying.measured.uff_units import FREQUENCY, FileUnits
 from faying.measured.universal import Function, UniversalFile
 from faying.misuse import checked_call
@@ -85,7 +85,8 @@ def read_uff(path: str | Path, *, length_unit: str | None = None) -> UniversalFi
             f"{file}: its mode shapes are taken from data sets 55; {len(nodal)} of data sets 2414 are left out"
         )
     elif nodal:
-        shapes = [_nodal_shape(s, file) for s in nodal]
+        at = f"{file}, data set 2414"
+        shapes = [_mode(f, loss, _whole(points, str(file)), values, at) for f, loss, points, values in nodal]
     others, rigid = sorted({int(s["type"]) for s in sets} - TAKEN), sum(s["frequency"] == 0 for s in shapes)
     _check_numbered([s for s in sets if s["type"] == 58 and s["func_type"] == FRF_TYPE], file)
     return UniversalFile(
@@ -254,27 +255,9 @@ def _shape(data: dict[str, Any], where: str) -> dict[str, Any]:
     if kind == 2:
         frequency, loss = data["freq"], 2 * data["modal_damp_vis"] or data["modal_damp_his"]
     else:
-        frequency, loss = _of_pole(data["eig"])
-    spans = {key: re.fullmatch(r"95 % of [a-z ]+: (\S+) \.\. (\S+)", data[key].strip()) for key in ("id2", "id3")}
-    return {
-        **_mode(float(frequency), float(loss), points, np.stack(parts, axis=1), where),
-        "frequency_interval": _span(spans["id2"]),
-        "loss_interval": _span(spans["id3"]),
-    }
-
-
-def _nodal_shape(found: NodalShape, file: Path) -> dict[str, Any]:
-    """The same of a mode of data set 2414."""
-    frequency, loss = found.frequency, 2 * found.viscous or found.hysteretic
-    if found.analysis != 2 and found.pole:
-        frequency, loss = _of_pole(found.pole)
-    mode = _mode(frequency, loss, _whole(found.points, str(file)), found.values, f"{file}, data set 2414")
-    return {**mode, "frequency_interval": (np.nan, np.nan), "loss_interval": (np.nan, np.nan)}
-
-
-def _of_pole(pole: complex) -> tuple[float, float]:
-    """Frequency [Hz] and loss factor of a pole [1/s]."""
-    return abs(pole) / (2 * np.pi), -2 * pole.real / abs(pole) if abs(pole) else 0.0
+        frequency, loss = of_pole(data["eig"])
+    mode = _mode(float(frequency), float(loss), points, np.stack(parts, axis=1), where)
+    return {**mode, "frequency_interval": _span(data["id2"]), "loss_interval": _span(data["id3"])}
 
 
 def _mode(frequency: float, loss: float, points: Index, values: Array, where: str) -> dict[str, Any]:
@@ -289,10 +272,13 @@ def _mode(frequency: float, loss: float, points: Index, values: Array, where: st
     if len(once) < len(points) and not np.array_equal(values, values[first[np.searchsorted(once, points)]]):
         twice = points[np.setdiff1d(np.arange(len(points)), first)]
         raise ReadError(f"{where}: the mode has two motions of point {twice[0]}; export it again")
-    return {"frequency": frequency, "loss": loss, "points": points, "values": values}
+    unknown = dict.fromkeys(("frequency_interval", "loss_interval"), (np.nan, np.nan))
+    return {"frequency": frequency, "loss": loss, "points": points, "values": values, **unknown}
 
 
-def _span(found: re.Match[str] | None) -> tuple[float, float]:
+def _span(text: str) -> tuple[float, float]:
+    """The interval that a line of the header states, as `write_uff` writes it; NaN for another line."""
+    found = re.fullmatch(r"95 % of [a-z ]+: (\S+) \.\. (\S+)", text.strip())
     try:
         return (float(found[1]), float(found[2])) if found else (np.nan, np.nan)
     except ValueError:

@@ -140,18 +140,7 @@ def export_note(file: Path, labels: Iterable[int]) -> str:
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class NodalShape:
-    """A mode of data set 2414: analysis type, frequency [Hz], viscous and hysteretic damping, pole, points (p,) and
-    motion (p, 3)."""
-
-    analysis: int
-    frequency: float
-    viscous: float
-    hysteretic: float
-    pole: complex
-    points: Array
-    values: Array
+NodalShape = tuple[float, float, list[int], Array]  # frequency [Hz], loss factor, points (p,) and motion (p, 3)
 
 
 def shapes_2414(file: Path) -> tuple[list[NodalShape], list[str]]:
@@ -210,12 +199,11 @@ def _shape(lines: list[str], head: list[int]) -> NodalShape:
         values.append((numbers[::2] + 1j * numbers[1::2] if COMPLEX[head[4]] else numbers)[:3])
     if not points:
         raise ValueError
-    return NodalShape(
-        analysis=head[1],
-        frequency=times[1],
-        viscous=times[4],
-        hysteretic=times[5],
-        pole=complex(poles[0], poles[1]),
-        points=np.array(points),
-        values=np.array(values),
-    )
+    pole = complex(poles[0], poles[1])
+    frequency, loss = of_pole(pole) if head[1] != 2 and pole else (times[1], 2 * times[4] or times[5])
+    return frequency, loss, points, np.array(values)
+
+
+def of_pole(pole: complex) -> tuple[float, float]:
+    """Frequency [Hz] and loss factor of a pole [1/s]."""
+    return abs(pole) / (2 * np.pi), -2 * pole.real / abs(pole) if abs(pole) else 0.0

@@ -16,8 +16,12 @@ FORCES = (9, 13)  # reaction and excitation
 DIMENSIONS = {"receptance": "m", "mobility": "m/s", "accelerance": "m/s^2"}
 FREQUENCY = 18
 NONE = ("", "NONE", "-", "1", "UNKNOWN", "UNDEFINED", "N/A")
-
-
+HERTZ = {
+    **dict.fromkeys(("hz", "hertz", "cps", "c/s"), 1.0),
+    **dict.fromkeys(("rad/s", "rad/sec", "rads/s", "rad/second"), 1 / (2 * pi)),
+    **dict.fromkeys(("rpm", "cpm", "1/min"), 1 / 60),
+    "khz": 1e3,
+}
 MAX_FACTOR = 1e12  # of a unit: nanometres are 1e9 a metre
 
 
@@ -78,16 +82,10 @@ def hertz(data: dict[str, Any], where: str) -> float:
             "export it over frequency"
         )
     text = label.strip().lower().replace(" ", "")
-    if states_nothing(label) or text in ("hz", "hertz", "cps", "c/s"):
+    if states_nothing(label):
         return 1.0
-    if text in ("rad/s", "rad/sec", "rads/s", "rad/second"):
-        return 1 / (2 * pi)
-    if text in ("rpm", "cpm", "1/min"):
-        return 1 / 60
-    if text == "khz":
-        return 1e3
-    if label.strip() == "MHz":
-        return 1e6
+    if text in HERTZ or label.strip() == "MHz":
+        return HERTZ.get(text, 1e6)
     if text == "mhz":
         raise ReadError(f'{where}: the unit "{label.strip()}" of its abscissa may be MHz or mHz; export it over Hz')
     raise ReadError(
@@ -122,11 +120,8 @@ def frf_scale(
                 raise ReadError(_unknown(bottom, "force, such as N", where))
             if force is None and units is not None:
                 force = 1 / units.force
-            return (
-                name,
-                motion / (force or 1.0),
-                "" if force else f"{where}: no unit of force is stated; newtons are assumed",
-            )
+            note = "" if force else f"{where}: no unit of force is stated; newtons are assumed"
+            return name, motion / (force or 1.0), note
     if named is None:
         raise ReadError(
             f'{where}: neither its type code nor its unit "{top}" states what was measured; give it, for example '

@@ -41,16 +41,8 @@ def write_uff(path: str | Path, *contents: ModeSet | FRF, title: str = "Faying")
         raise InputError("nothing to write; give modes or FRFs")
     sets: list[dict[str, Any]] = [
         {"type": 151, "model_name": title[:80], "description": "NONE", "db_app": "Faying", "program": "Faying"},
-        {
-            "type": 164,
-            "units_code": 1,
-            "units_description": "SI: Meter (newton)",
-            "temp_mode": 2,
-            "length": 1.0,
-            "force": 1.0,
-            "temp": 1.0,
-            "temp_offset": 273.15,
-        },
+        {"type": 164, "units_code": 1, "units_description": "SI: Meter (newton)", "temp_mode": 2}
+        | {"length": 1.0, "force": 1.0, "temp": 1.0, "temp_offset": 273.15},
     ]
     positions: dict[int, Position] = {}
     for content in contents:
@@ -80,12 +72,8 @@ def _nodes(positions: Mapping[int, Position]) -> dict[str, Any]:
     }
 
 
-def _split(dof: Dof) -> tuple[float, str]:
-    return (-1.0, dof.direction[1:]) if dof.direction.startswith("-") else (1.0, dof.direction)
-
-
 def _shapes(modes: ModeSet) -> list[dict[str, Any]]:
-    bad = [str(d) for d in modes.dofs if _split(d)[1] not in ("x", "y", "z")]
+    bad = [str(d) for d in modes.dofs if d.split()[1] not in ("x", "y", "z")]
     if bad:
         raise InputError(
             f"{', '.join(bad)}: data set 55 takes motion along x, y and z; leave rotations out, and state the direction"
@@ -93,7 +81,7 @@ def _shapes(modes: ModeSet) -> list[dict[str, Any]]:
     points = list(dict.fromkeys(d.point for d in modes.dofs))
     values = np.zeros((len(modes.frequencies), len(points), 3), complex)
     for k, dof in enumerate(modes.dofs):
-        sign, name = _split(dof)
+        sign, name = dof.split()
         values[:, points.index(dof.point), "xyz".index(name)] = sign * modes.shapes[:, k]
     real = not np.any(values.imag)
     out = []
@@ -163,5 +151,5 @@ def _functions(frf: FRF) -> list[dict[str, Any]]:
 
 
 def _place(prefix: str, dof: Dof) -> dict[str, int]:
-    sign, name = _split(dof)
-    return {f"{prefix}_node": dof.point, f"{prefix}_dir": int(sign) * CODES[name]}
+    sign, name = dof.split()
+    return {f"{prefix}_node": dof.point, f"{prefix}_dir": sign * CODES[name]}
