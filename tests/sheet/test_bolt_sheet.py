@@ -15,8 +15,9 @@ from faying.case.scatter import DEFAULT_WAY, preload_scatter
 from faying.cli.main import main
 from faying.sheet import page as shown
 from faying.sheet.bolt_loads import AtPreload, BoltLoad
-from faying.sheet.bolt_sheet import bolt_sheet, choice_for
+from faying.sheet.bolt_sheet import bolt_sheet
 from faying.study import Study
+from faying.study.keys.bolt_sheet import choice_of
 from tests.helpers.studies import write
 
 BOLT = {"diameter": "8 mm", "material": "45 steel", "grade": "8.8", "preload": ["2 kN", "6 kN"]}
@@ -228,18 +229,19 @@ def test_the_preload_is_chosen(made):
 
 def test_scatter_follows_the_way_of_tightening(made):
     hydraulic = made(bolt_sheet={"tightening": "hydraulic"})
-    assert preload_scatter(hydraulic, "bolt", choice_for(hydraulic, "bolt"))[0] == 0.23
+    assert preload_scatter(hydraulic, "bolt", choice_of(hydraulic.bolt_sheets, "bolt"))[0] == 0.23
     uncertain = made(
         bolt=BOLT | {"preload": "6 kN"}, uncertain={"preload": {"tightening": "yield or angle controlled"}}
     )
-    assert preload_scatter(uncertain, "bolt", choice_for(uncertain, "bolt"))[0] == pytest.approx(0.12, rel=1e-3)
+    choice = choice_of(uncertain.bolt_sheets, "bolt")
+    assert preload_scatter(uncertain, "bolt", choice)[0] == pytest.approx(0.12, rel=1e-3)
 
 
 def test_a_bolt_has_its_own_table(made):
     study = made(bolt_sheet=[{"bolt": "bolt", "axial": "1 kN"}, {"clamp": "2 kN"}])
-    assert choice_for(study, "bolt").axial == (0.0, 1e3)
-    assert choice_for(study, "another").clamp == 2e3
-    assert choice_for(made(), "bolt").axial is None
+    assert choice_of(study.bolt_sheets, "bolt").axial == (0.0, 1e3)
+    assert choice_of(study.bolt_sheets, "another").clamp == 2e3
+    assert choice_of(made().bolt_sheets, "bolt").axial is None
 
 
 @pytest.mark.parametrize(
@@ -267,10 +269,10 @@ def test_friction_of_the_bolt_counts_where_the_sheet_says_none(made):
 
     rubbing = BOLT | {"thread_friction": 0.09, "head_friction": 0.11}
     study = made(bolt=rubbing)
-    found = {q.symbol: q.value for q in _tightening(study, study.bolts[0], choice_for(study, "bolt"), 1e3)}
+    found = {q.symbol: q.value for q in _tightening(study, study.bolts[0], choice_of(study.bolt_sheets, "bolt"), 1e3)}
     assert (found["mu_G"], found["mu_K"]) == (0.09, 0.11)
     study = made(bolt=rubbing, bolt_sheet={"thread_friction": 0.2})
-    found = {q.symbol: q.value for q in _tightening(study, study.bolts[0], choice_for(study, "bolt"), 1e3)}
+    found = {q.symbol: q.value for q in _tightening(study, study.bolts[0], choice_of(study.bolt_sheets, "bolt"), 1e3)}
     assert (found["mu_G"], found["mu_K"]) == (0.2, 0.11)
 
 

@@ -146,7 +146,6 @@ CLASSES = {
     "12.9": (1220e6, 1100e6, 970e6),
 }
 PROOF = {name: proof for name, (*_, proof) in CLASSES.items()}
-STRENGTH = {name: (tensile, lasting) for name, (tensile, lasting, _) in CLASSES.items()}
 THICK, THICK_CLASS = 16e-3, (830e6, 660e6, 600e6)  # beyond this diameter [m], class 8.8 has these stresses
 MIN_DIAMETER, MAX_DIAMETER = 1.6e-3, 39e-3  # diameters [m] that ISO 898-1 covers
 THINNEST, THICKEST = 1e-3, 300e-3  # diameters [m] of the threads of ISO 261

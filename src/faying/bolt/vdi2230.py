@@ -12,11 +12,7 @@ from faying.units import show
 
 # guide values of embedding [m] under axial load, from a roughness height Rz [m]: in the thread, under head or nut each,
 # at each interface between parts (VDI 2230 Part 1:2003 and 2015, Table 5.4/1)
-EMBEDDING = {
-    0.0: (3.0e-6, 2.5e-6, 1.5e-6),
-    10e-6: (3.0e-6, 3.0e-6, 2.0e-6),
-    40e-6: (3.0e-6, 4.0e-6, 3.0e-6),
-}
+EMBEDDING = {0.0: (3.0e-6, 2.5e-6, 1.5e-6), 10e-6: (3.0e-6, 3.0e-6, 2.0e-6), 40e-6: (3.0e-6, 4.0e-6, 3.0e-6)}
 DEFAULT_FRICTION = 0.12  # the middle of class B, 0.08 to 0.16: metal, oiled or coated (VDI 2230 Part 1:2015, Table A5)
 TIGHTENED = 0.9  # of the yield stress that tightening may use (VDI 2230 Part 1:2015, R7)
 ROUGHEST = 160e-6  # m: the table ends there

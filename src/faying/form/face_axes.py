@@ -71,14 +71,7 @@ class FaceAxes:
         origin = middle[0] * x + middle[1] * y + depth * normal
         spacing = max(_spacing(mesh, face, np.stack([x, y]), middle, sides) for face in faces)
         return cls(
-            origin=origin,
-            x_axis=x,
-            y_axis=y,
-            normal=normal,
-            lengths=sides,
-            certain=certain,
-            flat=flat,
-            spacing=spacing,
+            origin=origin, x_axis=x, y_axis=y, normal=normal, lengths=sides, certain=certain, flat=flat, spacing=spacing
         )
 
     def check(self, what: str) -> None:

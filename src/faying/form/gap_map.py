@@ -132,10 +132,9 @@ class FaceMap(Summary):
             axes.check("a map without x_axis")
         x = axes.x_axis if self.x_axis is None else np.array(self.x_axis)
         y = np.cross(outward, x) if self.y_axis is None else np.array(self.y_axis)
-        origin = axes.origin
         if self.origin is None:
             middle = (self.places.min(axis=0) + self.places.max(axis=0)) / 2
-            origin = origin - (middle[0] * x / np.linalg.norm(x) + middle[1] * y / np.linalg.norm(y))
+            origin = axes.origin - (middle[0] * x / np.linalg.norm(x) + middle[1] * y / np.linalg.norm(y))
         else:
             origin = np.array(self.origin)
         depth = minimum_zone(self.places, self.heights).depth(self.places, self.heights)
@@ -156,17 +155,17 @@ def read_gap_map(
     y_axis: tuple[float, float, float],
 ) -> GapMap:
     """Read three columns x, y, gap; a heading may name them in any order and state units, else both are given."""
-    wanted = (*_xy(xy_unit), Wanted(names=("gap",), unit="m", given=gap_unit, key="gap_unit"))
-    table = read_list(path, wanted, "a gap map has the columns x, y, gap")
+    gap = Wanted(names=("gap",), unit="m", given=gap_unit, key="gap_unit")
+    places, gaps = _points(path, xy_unit, gap, "a gap map has the columns x, y, gap")
+    return GapMap(places=places, gaps=gaps, origin=origin, x_axis=x_axis, y_axis=y_axis)
+
+
+def _points(path: Path, xy_unit: str | None, z: Wanted, form: str) -> tuple[Array, Array]:
+    """Places (n, 2) [m] and values (n,) [m] of a list of points x, y, z."""
+    x, y = (Wanted(names=(name,), unit="m", given=xy_unit, key="xy_unit") for name in "xy")
+    table = read_list(path, (x, y, z), form)
     refuse_lonely(table[:, :2], table[:, 2], path.name)
-    return GapMap(places=table[:, :2], gaps=table[:, 2], origin=origin, x_axis=x_axis, y_axis=y_axis)
-
-
-def _xy(unit: str | None) -> tuple[Wanted, Wanted]:
-    return (
-        Wanted(names=("x",), unit="m", given=unit, key="xy_unit"),
-        Wanted(names=("y",), unit="m", given=unit, key="xy_unit"),
-    )
+    return table[:, :2], table[:, 2]
 
 
 def read_heights(
@@ -182,9 +181,7 @@ def read_heights(
     kind = kind_of(path, "numbers")
     if kind is not None and "numbers" in kind.serves:
         z = Wanted(names=("z", "height", "heights", "gap"), unit="m", given=z_unit, key="z_unit")
-        table = read_list(path, (*_xy(xy_unit), z), "a list of measured points has the columns x, y, z")
-        refuse_lonely(table[:, :2], table[:, 2], path.name)
-        return table[:, :2], table[:, 2]
+        return _points(path, xy_unit, z, "a list of measured points has the columns x, y, z")
     from faying.surface.files.read import read_scan
     from faying.surface.form import find_spikes, levelled
 

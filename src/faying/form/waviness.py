@@ -296,18 +296,8 @@ PROCESSES = {
         "the recommendation SEV RS 3951-73, stanotex.ru/volnistost-poverhnosti)",
         measured=True,
     ),
-    "turned": Process(
-        least=1.4e-6 / pi,
-        greatest=6.0e-6 / pi,
-        source="convention: as milled",
-        measured=False,
-    ),
-    "ground": Process(
-        least=0.15e-6,
-        greatest=0.6e-6,
-        source="convention: a third of milled",
-        measured=False,
-    ),
+    "turned": Process(least=1.4e-6 / pi, greatest=6.0e-6 / pi, source="convention: as milled", measured=False),
+    "ground": Process(least=0.15e-6, greatest=0.6e-6, source="convention: a third of milled", measured=False),
     "lapped": Process(
         least=0.05e-6,
         greatest=0.59e-6 / GAUSSIAN,

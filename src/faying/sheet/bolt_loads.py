@@ -21,12 +21,8 @@ COLD = "without heat: "  # the same of what else acts
 AGAIN = "'"  # stands behind where a study has a case of that name
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Parted:
-    """Cases with temperatures, by name: the case of these alone, and that of all else."""
-
-    heat: dict[str, Load]
-    rest: dict[str, Load]
+# name of a case with temperatures -> the case of these alone, and that of all else
+_Parted = dict[str, tuple[Load, Load]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +92,7 @@ def bolt_loads(
     asked = _with_needs(study.load_cases, names)
     base = preloaded_case(case.under(state.preload), state.preload, state.springs, engine, modes=False)
     parted = _parted(asked, names)
-    loads = (*asked, *parted.heat.values(), *parted.rest.values())
+    loads = (*asked, *(heat for heat, _ in parted.values()), *(rest for _, rest in parted.values()))
     mean = answers(base, loads, progress)
     ends: list[LoadCases | None] = []
     missing = ["", ""]
@@ -124,7 +120,8 @@ def bolt_loads(
 
 def _parted(asked: Sequence[Load], names: Sequence[str]) -> _Parted:
     """For each case of these names that has temperatures: a case of them alone, and one without them."""
-    out, by_name = _Parted(heat={}, rest={}), {load.name: load for load in asked}
+    out: _Parted = {}
+    by_name = {load.name: load for load in asked}
     taken = set(by_name)
 
     def free(name: str) -> str:
@@ -136,9 +133,9 @@ def _parted(asked: Sequence[Load], names: Sequence[str]) -> _Parted:
     for name in names:
         changes = {what: change for what, change in _temperatures(by_name, name).items() if change}
         if changes:
-            out.heat[name] = Load(free(HEAT + name), temperature=changes)
+            heat = Load(free(HEAT + name), temperature=changes)
             without = {what: -change for what, change in changes.items()}
-            out.rest[name] = Load(free(COLD + name), combine={name: 1.0}, temperature=without)
+            out[name] = heat, Load(free(COLD + name), combine={name: 1.0}, temperature=without)
     return out
 
 
@@ -146,8 +143,8 @@ def _at_preload(found: LoadCases, k: int, names: Sequence[str], share: float, pa
     """What cases are to one bolt; share: its load factor Phi_K for a load at the seats."""
     rows = [found.index(name) for name in names]
     change = found.bolt_force[:, k] - found.bolt_preload[k]
-    heat = np.array([change[found.index(parted.heat[name].name)] if name in parted.heat else 0.0 for name in names])
-    across = [parted.rest[name].name if name in parted.rest else name for name in names]
+    heat = np.array([change[found.index(parted[name][0].name)] if name in parted else 0.0 for name in names])
+    across = [parted[name][1].name if name in parted else name for name in names]
     working = found.working_load[rows, k]
     most = int(np.argmax(working if working.max() > 0 else np.abs(working)))
     known = np.isfinite(found.load_factor[rows[most], k]) and share > 0
@@ -155,7 +152,7 @@ def _at_preload(found: LoadCases, k: int, names: Sequence[str], share: float, pa
     own = change[rows] - heat
     if len(rows) == 1:  # from nothing to it
         working, own = np.append(working, 0.0), np.append(own, 0.0)
-    heated = any(name in parted.heat for name in names)
+    heated = any(name in parted for name in names)
     return AtPreload(
         axial=(float(working.min()), max(float(working.max()), 0.0)),
         transverse=max(float(found.transverse_load[found.index(name), k]) for name in across),

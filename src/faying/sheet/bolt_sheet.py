@@ -120,7 +120,7 @@ def bolt_sheet(
     """
     plan = Study.read(study)
     number = preload_index(plan.loads, preload, names=plan.load_names)
-    stages = 7 if any(choice_for(plan, bolt.name).loads for bolt in plan.bolts) else 4
+    stages = 7 if any(choice_of(plan.bolt_sheets, bolt.name).loads for bolt in plan.bolts) else 4
     progress = Progress(stages, report)
     case = Case.of(bare(plan), progress)
     engine = engine_of("reanalysis", case)
@@ -135,15 +135,10 @@ def bolt_sheet(
     return BoltSheets(title=plan.title, load=state.load, sheets=tuple(sheets))
 
 
-def choice_for(study: Study, bolt: str) -> BoltSheetChoice:
-    """Return what the study says for the sheet of a bolt: its own table, that of all others, or nothing."""
-    return choice_of(study.bolt_sheets, bolt)
-
-
 def _ends(study: Study, index: int, numbers: BoltNumbers, force: float) -> tuple[float, float]:
     """Least preload in service, before any temperature, and greatest at assembly [N]."""
     bolt = study.bolts[index].name
-    choice = choice_for(study, bolt)
+    choice = choice_of(study.bolt_sheets, bolt)
     scatter, _ = preload_scatter(study, bolt, choice)
     embedding, _ = _embedding(numbers, index, choice)
     lost = embedding / float(numbers.compliance[0, index] + numbers.member_compliance[0, index])
@@ -152,7 +147,7 @@ def _ends(study: Study, index: int, numbers: BoltNumbers, force: float) -> tuple
 
 def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: BoltLoad | None) -> BoltSheet:
     fitted = case.structure.fitted_bolts[index]
-    bolt, choice = fitted.bolt, choice_for(case.study, fitted.bolt.name)
+    bolt, choice = fitted.bolt, choice_of(case.study.bolt_sheets, fitted.bolt.name)
     if found is not None:
         low = found.least or found.mean
         choice = replace(
@@ -213,11 +208,7 @@ def _departures(factor: float, choice: BoltSheetChoice, found: BoltLoad | None) 
         "dF_P": "force that the joint loses at the least preload",
         "dF_M": "greatest bolt force at the greatest preload",
     }
-    under = (
-        " that the load factor does not give (no load case: none)"
-        if typed
-        else ", as found, that the load factor does not give"
-    )
+    under = f"{'' if typed else ', as found,'} that the load factor does not give{' (no load case: none)' * typed}"
     ends = ("", "") if found is None else found.missing
     missing = {symbol: ends[symbol == "dF_M"] or "bolt.diameter and bolt.material" for symbol in values}
     return [_quantity(symbol, names[symbol] + under, "N", values[symbol], missing[symbol]) for symbol in values]

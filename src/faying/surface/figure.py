@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from faying.errors import InputError
-from faying.style import COLOURS, SMALL, WIDE, axes_of, colour, drawing, new_figure, plain, save
+from faying.style import COLOURS, SMALL, WIDE, axes_of, colour, drawing, new_figure, plain, prefixed, save
 from faying.surface.convention import density
 from faying.surface.form import Prepared, prepared
 from faying.surface.fractal_numbers import FractalNumbers
@@ -19,23 +19,13 @@ from faying.units import show
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_PREFIXES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"), (1e-12, "pm"))
-
-
-def _unit(value: float) -> tuple[float, str]:
-    """The factor and name of the unit in which `value` [m] reads as a number of one to three digits."""
-    for factor, name in _PREFIXES:
-        if abs(value) >= factor:
-            return factor, name
-    return _PREFIXES[-1]
-
 
 @drawing
 def height_map(scan: AreaHeights, ax: Any) -> Any:
     """Draw the heights as a map; colours span the central 98 % of the heights."""
-    factor, name = _unit(max(scan.size))
+    factor, name = prefixed(max(scan.size), "m")
     low, high = np.nanquantile(scan.heights, [0.01, 0.99])
-    scale, tall = _unit(float(high - low))
+    scale, tall = prefixed(high - low, "m")
     image = ax.imshow(
         scan.heights / scale,
         origin="lower",
@@ -54,8 +44,8 @@ def height_map(scan: AreaHeights, ax: Any) -> Any:
 @drawing
 def profile(scan: LineHeights, ax: Any) -> Any:
     """Draw a line of heights."""
-    factor, name = _unit(scan.length)
-    scale, tall = _unit(float(np.nanmax(np.abs(scan.heights))))
+    factor, name = prefixed(scan.length, "m")
+    scale, tall = prefixed(np.nanmax(np.abs(scan.heights)), "m")
     ax.plot(np.arange(len(scan.heights)) * scan.spacing / factor, scan.heights / scale, lw=0.7, color=COLOURS[0])
     ax.set_xlabel(f"x [{name}]")
     ax.set_ylabel(f"height [{tall}]")

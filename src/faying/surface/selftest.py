@@ -53,8 +53,6 @@ def self_test(
     Raises InputError as `fit_fractal` does, NotConverged where the method answers no longer to D or fails on the
     synthetic surfaces.
     """
-    from scipy.stats import t as student
-
     options: dict[str, Any] = {"degree": degree, "spikes": spikes, "convention": convention, "gamma": gamma}
     raw = plain_fit(scan, method, **options)
     base = raw if method == "psd" else plain_fit(scan, "psd", **options)
@@ -76,7 +74,7 @@ def self_test(
         rows.append((D, fit.D, _log_density(fit, pivot, c) - level))
     if len(rows) < max(9, rounds // 2):
         raise NotConverged(f"{method} failed on {rounds - len(rows)} of {rounds} synthetic surfaces like this scan")
-    return _corrected(scan, raw, np.array(rows), pivot, options, student)
+    return _corrected(scan, raw, np.array(rows), pivot, options)
 
 
 def _log_density(fit: FractalFit, f: float, c: float) -> float:
@@ -111,8 +109,10 @@ def _like(
 
 
 def _corrected(
-    scan: AreaHeights | LineHeights, raw: FractalFit, rows: Array, pivot: float, options: dict[str, Any], student: Any
+    scan: AreaHeights | LineHeights, raw: FractalFit, rows: Array, pivot: float, options: dict[str, Any]
 ) -> FractalFit:
+    from scipy.stats import t as student
+
     c = prefactor(options["convention"], options["gamma"])
     gain, offset = (float(v) for v in np.polyfit(rows[:, 0], rows[:, 1], 1))
     if gain < 0.2:

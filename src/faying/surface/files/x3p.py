@@ -4,13 +4,12 @@ Read by our own code rather than a library because the files come from strangers
 is unpacked, XML with a document type (where entity attacks live) is refused, and every fault gets a sentence.
 """
 
-from __future__ import annotations
-
 import hashlib
 import zipfile
+from collections.abc import Iterator
 from math import isfinite, prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree
 from xml.sax.saxutils import escape
 
@@ -20,9 +19,6 @@ from faying.errors import InputError, ReadError, shown
 from faying.surface.heights import Instrument, check_points
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 NUMBERS = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
 LARGEST_XML = 64 * 2**20  # with heights in it; ISO 25178-72 puts larger scans in a block of binary data
