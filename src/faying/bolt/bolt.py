@@ -91,14 +91,9 @@ class Washer:
     def __init__(
         self, *, outer: float | str, inner: float | str, thickness: float | str, material: Solid | str
     ) -> None:
-        values = {
-            "outer": number(outer, "washer: outer", "m", least=0),
-            "inner": number(inner, "washer: inner", "m", least=0),
-            "thickness": number(thickness, "washer: thickness", "m", least=0),
-            "material": solid_of(material, "washer"),
-        }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        for name, length in (("outer", outer), ("inner", inner), ("thickness", thickness)):
+            object.__setattr__(self, name, number(length, f"washer: {name}", "m", least=0))
+        object.__setattr__(self, "material", solid_of(material, "washer"))
         if self.inner >= self.outer:
             raise InputError(
                 f"washer: inner diameter {show(self.inner, 'm')} must be less than the outer {show(self.outer, 'm')}"

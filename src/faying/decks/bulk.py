@@ -227,13 +227,5 @@ class Bulk:
 
 def listed(words: list[str]) -> list[tuple[int, int]]:
     """Numbers and ranges with THRU as (first, last)."""
-    out: list[tuple[int, int]] = []
-    k = 0
-    while k < len(words):
-        if words[k].upper() == "THRU":
-            out[-1] = out[-1][0], int(words[k + 1])
-            k += 2
-        else:
-            out.append((int(words[k]), int(words[k])))
-            k += 1
-    return out
+    spans = re.sub(r" THRU +", ":", " ".join(words), flags=re.I).split()
+    return [(int(first), int(last or first)) for first, _, last in (span.partition(":") for span in spans)]

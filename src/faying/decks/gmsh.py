@@ -235,17 +235,10 @@ def _used_up(words: _Words | _Bytes | None, path: Path) -> None:
 
 def _distinct(bodies: dict[str, list[int]]) -> tuple[dict[str, list[int]], dict[str, str]]:
     """Bodies of different elements, and the name of the first one by that of each later one with the same elements."""
-    own: dict[str, list[int]] = {}
-    same: dict[str, str] = {}
     first: dict[frozenset[int], str] = {}
-    for name, some in bodies.items():
-        key = frozenset(some)
-        if key in first:
-            same[name] = first[key]
-        else:
-            first[key] = name
-            own[name] = list(dict.fromkeys(some))
-    return own, same
+    named = {name: first.setdefault(frozenset(some), name) for name, some in bodies.items()}
+    own = {name: list(dict.fromkeys(bodies[name])) for name in first.values()}
+    return own, {name: other for name, other in named.items() if name != other}
 
 
 Rows = list[tuple[int, int, list[int], list[int]]]

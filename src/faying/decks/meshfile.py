@@ -96,12 +96,11 @@ def _meshed(
         raise InputError(
             f'{file.name} is a STEP file and is meshed here; give the largest edge, such as size = "10 mm"'
         )
+    local = face_size or {}
     return mesh_step(
         file,
         size=number(size, "size", "m", least=0),
-        local_size={
-            name: number(one, f"face_size of {name!r}", "m", least=0) for name, one in (face_size or {}).items()
-        },
+        local_size={name: number(one, f"face_size of {name!r}", "m", least=0) for name, one in local.items()},
         cache=None if cache is None else Path(cache),
     )
 

@@ -128,8 +128,8 @@ def _in_order(points: Array, cells: Index, kind: str) -> Index:
     element = KINDS[kind]
     corners = cells[:, : element.corners]
     where = points[corners - 1]
-    mirrored = {"tet": [0, 2, 1, 3], "wedge": [0, 2, 1, 3, 5, 4], "hex": [0, 3, 2, 1, 4, 7, 6, 5]}[element.shape.name]
-    three = {"tet": (1, 2, 3), "wedge": (1, 2, 3), "hex": (1, 3, 4)}[element.shape.name]
+    mirrored = list(element.mirrored[: element.corners])
+    three = (1, 3, 4) if element.shape.name == "hex" else (1, 2, 3)
     volume = np.linalg.det(np.stack([where[:, i] - where[:, 0] for i in three], axis=1))
     if np.median(volume) < 0:
         corners, where = corners[:, mirrored], where[:, mirrored]

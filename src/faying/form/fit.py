@@ -209,9 +209,7 @@ def figure(fit: FormFit, title: str) -> Any:
         picture = axes.tripcolor(x, y, values, shading="gouraud", rasterized=True, cmap="RdBu_r", vmin=-most, vmax=most)
         bar = fig.colorbar(picture, ax=axes)
         bar.set_label(f"{'gap' if fit.is_gap else 'height'} above the middle plane [µm]")
-    axes.set_aspect("equal")
-    axes.set_xlabel("x [mm]")
-    axes.set_ylabel("y [mm]")
     flatness = unit(show(fit.zone.flatness, "m", digits=3))
-    axes.set_title(f"{headline(title)}\nflatness {flatness} (minimum zone)")
+    title = f"{headline(title)}\nflatness {flatness} (minimum zone)"
+    axes.set(aspect="equal", xlabel="x [mm]", ylabel="y [mm]", title=title)
     return fig

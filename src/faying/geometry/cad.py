@@ -333,16 +333,20 @@ class CadParts:
 
     def without(self, parts: Sequence[str]) -> "CadParts":
         """The same with some parts left out. Raises InputError where there is no such part, or none is left."""
-        missing = [part for part in parts if part not in self.names]
-        if missing:
-            raise InputError(
-                f"geometry.leave_out names the part {missing[0]!r}, which is not there; the parts are "
-                f"{', '.join(map(repr, self.names))}"
-            )
+        self._check(parts, "leave_out")
         left = [k for k, name in enumerate(self.names) if name not in parts]
         if not left:
             raise InputError("geometry.leave_out leaves no part; take at least two out of it")
         return replace(self, solids=[self.solids[k] for k in left], names=[self.names[k] for k in left])
+
+    def _check(self, parts: Sequence[str], key: str) -> None:
+        """Raise InputError where a key of the study names a part that is not there."""
+        missing = [part for part in parts if part not in self.names]
+        if missing:
+            raise InputError(
+                f"geometry.{key} names the part {missing[0]!r}, which is not there; the parts are "
+                f"{', '.join(map(repr, self.names))}"
+            )
 
     def united(self, groups: Sequence[Sequence[str]]) -> "CadParts":
         """The same with the bodies of each group as one part, by the name of its first.
@@ -351,12 +355,7 @@ class CadParts:
         """
         solids, gone = list(self.solids), set()
         for group in groups:
-            missing = [part for part in group if part not in self.names]
-            if missing or not group:
-                raise InputError(
-                    f"geometry.unite names the part {[*missing, ''][0]!r}, which is not there; the parts are "
-                    f"{', '.join(map(repr, self.names))}"
-                )
+            self._check(group or [""], "unite")
             first, *others = (self.names.index(part) for part in group)
             one = list(sum((solids[k] for k in others), solids[first]).solids)
             if len(one) != 1:

@@ -3,7 +3,7 @@
 from collections.abc import Container, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from itertools import combinations, pairwise
+from itertools import combinations
 from pathlib import Path
 from typing import Any, Literal
 
@@ -232,8 +232,7 @@ class GeometryFacts(Summary):
 
     @cached_property
     def _triangles(self) -> dict[tuple[str, int], Array]:
-        order = np.argsort(self.face_of, kind="stable")
-        rows = np.split(order, np.cumsum(np.bincount(self.face_of, minlength=len(self.faces)))[:-1])
+        rows = _rows(self.face_of, len(self.faces))
         return {face.side: self.corners[row] for face, row in zip(self.faces, rows, strict=True)}
 
     def without(self, parts: Container[str]) -> "GeometryFacts":
@@ -348,11 +347,7 @@ def _triangles(solid: Any) -> tuple[Array, Array, Index]:
     data = solid._webgui_data()["Bezier_trig_points"]  # the one way by which the kernel hands triangles on
     places = np.array([np.reshape(block, (-1, 4)) for block in data[:3]])
     normals = np.array([np.reshape(block, (-1, 3)) for block in data[3:]])
-    return (
-        1e-3 * places[:, :, :3].transpose(1, 0, 2),
-        normals.transpose(1, 0, 2),
-        places[0, :, 3].astype(np.int64),
-    )
+    return 1e-3 * places[:, :, :3].transpose(1, 0, 2), normals.transpose(1, 0, 2), places[0, :, 3].astype(np.int64)
 
 
 def _distances(label: str, part: str, at: Sequence[float], solids: Sequence[Any], names: Sequence[str]) -> list[float]:
@@ -415,9 +410,7 @@ def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list
     than `MAX_DISTANCE` of the whole.
     """
     reach = MAX_DISTANCE * float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0)))
-    order = np.argsort(face_of, kind="stable")
-    ends = np.searchsorted(face_of[order], np.arange(len(faces) + 1))
-    rows = [order[a:b] for a, b in pairwise(ends.tolist())]
+    rows = _rows(face_of, len(faces))
     low = np.array([corners[r].min(axis=(0, 1)) if len(r) else np.full(3, np.inf) for r in rows])
     high = np.array([corners[r].max(axis=(0, 1)) if len(r) else np.full(3, -np.inf) for r in rows])
     part = np.unique([face.part for face in faces], return_inverse=True)[1]
@@ -437,6 +430,11 @@ def contacts(faces: Sequence[FaceFacts], corners: Array, face_of: Index) -> list
             if area > 1e-6 * min(one.area, two.area):
                 out.append(TouchingFaces(first=one.side, second=two.side, area=area, gap=gap))
     return sorted(out, key=lambda contact: -contact.area)
+
+
+def _rows(face_of: Index, count: int) -> list[Index]:
+    """The triangles of each of so many faces."""
+    return np.split(np.argsort(face_of, kind="stable"), np.cumsum(np.bincount(face_of, minlength=count))[:-1])
 
 
 def _gap(one: FaceFacts, two: FaceFacts) -> float | None:

@@ -322,10 +322,8 @@ def _gaps(frequency: Array, path: Path) -> list[str]:
     steps = np.diff(frequency)
     step = float(np.median(steps))
     alike = np.abs(steps - step) < 0.02 * abs(step)
-    if step <= 0 or alike.all() or alike.mean() < EVEN:
-        return []
     gaps = np.flatnonzero(steps > 1.9 * step)
-    if not gaps.size:
+    if step <= 0 or not gaps.size or alike.mean() < EVEN:
         return []
     k = int(gaps[0])
     return [

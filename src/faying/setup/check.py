@@ -319,11 +319,7 @@ def _laid(study: Study, mesh: Mesh, surfaces: Sequence[Surface], found: _Finding
 
 
 def _expected(
-    study: Study,
-    facts: GeometryFacts,
-    named: Mapping[str, tuple[FaceFacts, ...]],
-    mesh: Mesh | None,
-    found: _Findings,
+    study: Study, facts: GeometryFacts, named: Mapping[str, tuple[FaceFacts, ...]], mesh: Mesh | None, found: _Findings
 ) -> Expected:
     spec = study.geometry
     key = "geometry.mesh" if spec.mesh is not None else "geometry.size"
@@ -351,11 +347,12 @@ def _coarser(
 ) -> float | None:
     """How many times larger elements fit into the free memory [B]; None where what holes need does not."""
     spec = study.geometry
-    for ratio in COARSER:
+
+    def memory(ratio: float) -> float:
         fine = {name: ratio * size for name, size in spec.face_size.items()}
-        if Expected.of(study, unknowns_of(facts, ratio * spec.size, fine, named)).memory < free:
-            return ratio
-    return None
+        return Expected.of(study, unknowns_of(facts, ratio * spec.size, fine, named)).memory
+
+    return next((ratio for ratio in COARSER if memory(ratio) < free), None)
 
 
 def _contacts(sketch: Sketch, found: _Findings) -> None:
@@ -413,12 +410,10 @@ def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:
     shared: faces all of whose nodes are of another part, too.
     """
     places: list[BoltPlace | SolidPlace] = []
-    met = {face for joint in sketch.study.joints for face in joint.faces}
-    met |= {support.face for support in sketch.study.supports}
-    met |= {face for bond in sketch.study.bonds for face in bond.faces}
-    met |= shared
+    study = sketch.study
+    met = shared.union(*(joint.faces for joint in (*study.joints, *study.bonds)), (one.face for one in study.supports))
     well: dict[str, list[tuple[str, str]]] = {}  # what is said -> bolts and keys of which it is
-    for k, bolt in enumerate(sketch.study.bolts, 1):
+    for k, bolt in enumerate(study.bolts, 1):
         made = found.tried("bolt", f"bolt[{k}].{'at' if bolt.at else 'faces'}", partial(_placed, bolt, sketch.mesh))
         if made is None:
             continue
@@ -441,9 +436,9 @@ def _bolts(sketch: Sketch, found: _Findings, shared: set[str]) -> Sketch:
             found.add("ok", "bolt", f"{who or f'bolt {name!r} clamps'} {words}", key)
     found.tried("bolt", "bolt", lambda: each_in_its_place([one for one in places if isinstance(one, BoltPlace)]))
     sketch = replace(sketch, fitted_bolts=tuple(places))
-    keys = {bolt.name: f"bolt[{k}].preload" for k, bolt in enumerate(sketch.study.bolts, 1)}
+    keys = {bolt.name: f"bolt[{k}].preload" for k, bolt in enumerate(study.bolts, 1)}
     _notes(found, tuple(material_notes(sketch)), "part")
-    for note in bolt_notes(sketch, sketch.study.bolt_forces):
+    for note in bolt_notes(sketch, study.bolt_forces):
         key = next((key for name, key in keys.items() if note.text.startswith(f"bolt {name!r}")), "bolt")
         found.add("note", note.code, note.text, key)
     return sketch

@@ -207,9 +207,9 @@ _OF_VALUE = re.compile(
     r"\A[ \t]*#[ \t]*(?:ASSUMED\b|drawn: |[\d.,]+ [mc]?m2(?:, [^\r\n]* apart)?[ \t\r]*$)[^\r\n]*"
     r"|\A([ \t]*# largest element):[^\r\n]*"
 )
-_ABOVE = re.compile(
-    r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE
-)  # comments right above a place, which are of what begins there
+# comments right above a place, which are of what begins there
+_ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)
+_COMMENTS = re.compile(r"(?:[^\S\n]*+#[^\n]*+\n?)*+")
 _BLANK = re.compile(r"[ \t]*\r?\n")
 
 
@@ -363,11 +363,10 @@ def _with_key(text: str, every: list[Statement], path: KeyPath, value: Any) -> s
     if not parent or any(every[k].path == parent for k in heads):
         first = next((k for k in heads if every[k].path == parent), -1) if parent else -1
         end = next((k for k in heads if k > first), len(every))
+        line = f"{_key(str(path[-1]))} = {written(value)}"
         if first + 1 < end:
-            return _below(text, every[end - 1], f"{_key(str(path[-1]))} = {written(value)}")
-        if parent:
-            return _inserted(text, every[first].end, f"{_key(str(path[-1]))} = {written(value)}\n")
-        return _inserted(text, _behind_comments(text, 0), f"{_key(str(path[-1]))} = {written(value)}\n")
+            return _below(text, every[end - 1], line)
+        return _inserted(text, every[first].end if parent else _behind_comments(text, 0), f"{line}\n")
     outer: KeyPath = ()
     dotted: tuple[Statement, KeyPath] | None = None  # the table is written as a.b = ..., below the head of an outer one
     for one in every:
@@ -409,13 +408,6 @@ def _with_table(text: str, every: list[Statement], path: KeyPath, value: dict[An
 
 def _behind_comments(text: str, at: int) -> int:
     """Behind the comments that follow up to a blank line; `at` where they lead to a statement."""
-    here = at
-    while here < len(text):
-        end = text.find("\n", here) + 1 or len(text)
-        line = text[here:end].strip()
-        if not line:
-            return here
-        if not line.startswith("#"):
-            return at
-        here = end
-    return here
+    found = _COMMENTS.match(text, at)
+    end = at if found is None else found.end()
+    return at if text[end : _end_of_line(text, end)].strip() else end

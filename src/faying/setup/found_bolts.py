@@ -153,12 +153,10 @@ def _in_row(facts: GeometryFacts, stack: Stack) -> BoltProposal | str:
             return bolt(top, cone.faces, bore, cone.outer, why)
     top = heads[0]
     if tapped is not None:
+        if not seats[top]:
+            return "have no flat face for a head"
         why = "seat: from the hole to the diameter of its head, ISO 4762"
-        return (
-            bolt(top, seats[top], ends[top], _socket(size), why, "socket")
-            if seats[top]
-            else "have no flat face for a head"
-        )
+        return bolt(top, seats[top], ends[top], _socket(size), why, "socket")
     if flats[0] is None or flats[1] is None:
         return "have no flat face for head or nut at an end (a blind hole?)"
     widest = max(ends, key=lambda bore: (bore.slot is not None, bore.radius))
@@ -217,9 +215,8 @@ def found_dowels(
     for stack in free:
         if takes_dowel(facts, stack):
             walls = tuple(tuple(facts.face(bore.part, number) for number in bore.faces) for bore in stack.bores)
-            remark = (
-                f"{show(2 * stack.bores[0].radius, 'm')} (ISO 2338), as long as its holes; take it out if there is none"
-            )
+            wide = show(2 * stack.bores[0].radius, "m")
+            remark = f"{wide} (ISO 2338), as long as its holes; take it out if there is none"
             found.append(DowelProposal(faces=walls, remark=remark))
     return tuple(
         replace(pin, name=f"dowel {k}", walls=tuple(names.of_several(wall, "dowel") for wall in pin.faces))

@@ -36,8 +36,7 @@ def height_map(scan: AreaHeights, ax: Any) -> Any:
         interpolation="nearest",
     )
     ax.figure.colorbar(image, ax=ax, label=f"height [{tall}]", shrink=0.85)
-    ax.set_xlabel(f"x [{name}]")
-    ax.set_ylabel(f"y [{name}]")
+    ax.set(xlabel=f"x [{name}]", ylabel=f"y [{name}]")
     return ax
 
 
@@ -47,8 +46,7 @@ def profile(scan: LineHeights, ax: Any) -> Any:
     factor, name = prefixed(scan.length, "m")
     scale, tall = prefixed(np.nanmax(np.abs(scan.heights)), "m")
     ax.plot(np.arange(len(scan.heights)) * scan.spacing / factor, scan.heights / scale, lw=0.7, color=COLOURS[0])
-    ax.set_xlabel(f"x [{name}]")
-    ax.set_ylabel(f"height [{tall}]")
+    ax.set(xlabel=f"x [{name}]", ylabel=f"height [{tall}]")
     ax.margins(x=0)
     return ax
 
@@ -68,8 +66,7 @@ def power_spectrum(of: Spectrum, fits: Mapping[str, FractalNumbers | str], ax: A
         f = np.geomspace(1 / fit.band[1], 1 / fit.band[0], 50)
         law = density(fit.D, fit.G, fit.c) * f ** (2 * fit.D - 7)
         ax.loglog(f, law, lw=1.6, color=colour(k), label=f"{method}, $D$ {fit.D:.3f}")
-    ax.set_xlabel("frequency [1/m]")
-    ax.set_ylabel("power per frequency [m³]")
+    ax.set(xlabel="frequency [1/m]", ylabel="power per frequency [m³]")
     top = ax.secondary_xaxis("top", functions=(_inverse, _inverse))
     top.set_xlabel("wavelength [m]")
     for axis in (ax.xaxis, top.xaxis, ax.yaxis):
@@ -130,8 +127,7 @@ def estimators(fits: Mapping[str, FractalNumbers | str], ax: Any) -> Any:
         ax.plot(fit.D_interval, (row, row), lw=2, color=shade)
         ax.plot(fit.D, row, "o", color=shade)
     ax.set_yticks(range(len(good)), [name for name, _ in good])
-    ax.set_ylim(len(good) - 0.5, -0.5)
-    ax.set_xlabel("surface dimension $D$, 95 % interval")
+    ax.set(ylim=(len(good) - 0.5, -0.5), xlabel="surface dimension $D$, 95 % interval")
     ax.grid(axis="x", alpha=0.3)
     return ax
 

@@ -338,18 +338,13 @@ def _roll_off_in_words(spectrum: Spectrum, plateau: FittedPowerLaw, law: FittedP
 
 
 def _cut_in_words(low: float, high: float, bottom: float, top: float) -> tuple[str, ...]:
-    words = []
-    if top < high * 0.999:
-        words.append(
-            f"wavelengths below {show(1 / top, 'm', digits=3)} do not follow the power law (blur, noise or roll-off) "
-            "and were excluded from D and G"
-        )
-    if bottom > low * 1.001:
-        words.append(
-            f"wavelengths above {show(1 / bottom, 'm', digits=3)} do not follow the power law (form, lay or roll-off) "
-            "and were excluded from D and G"
-        )
-    return tuple(words)
+    short = (top, "below", "blur, noise or roll-off") if top < high * 0.999 else None
+    long = (bottom, "above", "form, lay or roll-off") if bottom > low * 1.001 else None
+    return tuple(
+        f"wavelengths {side} {show(1 / end, 'm', digits=3)} do not follow the power law ({why}) and were excluded "
+        "from D and G"
+        for end, side, why in filter(None, (short, long))
+    )
 
 
 def _passes(spectrum: Spectrum, law: FittedPowerLaw, bottom: float, top: float) -> bool:

@@ -272,52 +272,20 @@ def by_network(ready: Prepared, limits: Limits, c: float) -> Estimate:
     return through_draws(ready, band, c, solve, known.rms_D)
 
 
+WINDOWS, BAND = "windows from 10 spacings to a quarter of the side", "a band of a factor 5 in wavelength"
+STEPS = "Gaussian heights (for G); steps from 2 spacings to a sixteenth of the side"
+TERMS = "a band that holds as many frequencies of a series as the network was trained for"
 ESTIMATORS: dict[str, Estimator] = {
-    one.name: one
-    for one in (
-        Estimator(name="psd", needs="a band of a factor 5 in wavelength", bias="none seen", estimate=by_psd),
-        Estimator(
-            name="structure",
-            needs="lags from 3 spacings to a sixteenth of the side",
-            bias="up to +0.1 in D below 2.2",
-            estimate=by_structure,
-        ),
-        Estimator(
-            name="roughness-length",
-            needs="windows from 10 spacings to a quarter of the side",
-            bias="-0.05 to -0.1 in D above 2.4",
-            estimate=by_roughness_length,
-        ),
-        Estimator(
-            name="box",
-            needs="boxes from 2 spacings to an eighth of the side",
-            bias="-0.1 to -0.4 in D",
-            estimate=by_box,
-        ),
-        Estimator(
-            name="higuchi",
-            needs="Gaussian heights (for G); steps from 2 spacings to a sixteenth of the side",
-            bias="+0.08 in D at 2.1, -0.06 at 2.7",
-            estimate=by_higuchi,
-        ),
-        Estimator(
-            name="mfdfa",
-            needs="windows from 10 spacings to a quarter of the side",
-            bias="within 0.02 in D",
-            estimate=by_mfdfa,
-        ),
-        Estimator(
-            name="moments",
-            needs="a band of a factor 5 in wavelength",
-            bias="none seen; its interval is twice as wide as that of psd",
-            estimate=by_moments,
-        ),
-        Estimator(
-            name="fpenn",
-            needs="a band that holds as many frequencies of a series as the network was trained for",
-            bias="none seen",
-            estimate=by_network,
-        ),
+    name: Estimator(name=name, needs=needs, bias=bias, estimate=estimate)
+    for name, estimate, needs, bias in (
+        ("psd", by_psd, BAND, "none seen"),
+        ("structure", by_structure, "lags from 3 spacings to a sixteenth of the side", "up to +0.1 in D below 2.2"),
+        ("roughness-length", by_roughness_length, WINDOWS, "-0.05 to -0.1 in D above 2.4"),
+        ("box", by_box, "boxes from 2 spacings to an eighth of the side", "-0.1 to -0.4 in D"),
+        ("higuchi", by_higuchi, STEPS, "+0.08 in D at 2.1, -0.06 at 2.7"),
+        ("mfdfa", by_mfdfa, WINDOWS, "within 0.02 in D"),
+        ("moments", by_moments, BAND, "none seen; its interval is twice as wide as that of psd"),
+        ("fpenn", by_network, TERMS, "none seen"),
     )
 }
 METHODS = tuple(ESTIMATORS)
