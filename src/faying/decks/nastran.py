@@ -16,21 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from faying.decks import raw
 from faying.decks.bulk import Bulk, cards, listed, number
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, real, springs_of
-from faying.decks.raw import (
-    Matrices,
-    RawMesh,
-    both_triangles,
-    face_blocks,
-    gathered,
-    index,
-    joined,
-    not_in_file,
-    once,
-    read_text,
-    understood,
-)
 from faying.decks.vocabulary import left_out
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
@@ -45,12 +33,12 @@ OF_ELEMENTS = (
 Field = int | float | str
 
 
-def read(path: Path) -> RawMesh:
+def read(path: Path) -> raw.RawMesh:
     """Read a bulk data file. Raises ReadError for what it cannot read, naming line and card."""
     case, notes = _case_sets(path)
     bulk = Bulk()
     for name, fields, where in cards(path):
-        with understood(f"{where}: {name} {fields[0]} cannot be read"):
+        with raw.understood(f"{where}: {name} {fields[0]} cannot be read"):
             bulk.take(name, fields, where)
     if not bulk.grids or not bulk.solids:
         raise ReadError(
@@ -60,32 +48,32 @@ def read(path: Path) -> RawMesh:
         f"{count} cards {name} are left out, with their stiffness and mass" for name, count in bulk.left_out.items()
     ]
     notes += left_out(bulk.constraints, "")
-    numbers, points = index(bulk.grids), np.array([bulk.place(grid) for grid in bulk.grids])
+    numbers, points = raw.index(bulk.grids), np.array([bulk.place(grid) for grid in bulk.grids])
     notes += _turned(bulk, numbers, points)
     for name, some in case.items():
-        single = index(first for first, last in some if first == last)
+        single = raw.index(first for first, last in some if first == last)
         if len(np.setdiff1d(single, numbers)):
             notes.append(f"{name} of the case control has something that is not a grid; it is left out")
         else:
             bulk.sets.setdefault(name, some)
     if not bulk.ended:
-        text = read_text(path, "bulk data")
+        text = raw.read_text(path, "bulk data")
         if re.search(r"^[ \t]*+BEGIN\s+BULK", text, re.I | re.M):
             raise ReadError(f"{path} ends without ENDDATA; the file is cut short")
         notes.append(f"{path.name} has no ENDDATA: it may be cut short")
     loaded = (fields[1] for fields, _ in bulk.loads if fields[6].upper() != "THRU" and fields[1].isdigit())
-    notes += not_in_file("PLOAD4", "elements", map(int, loaded), bulk.solid.keys() | bulk.others)
-    return RawMesh(
+    notes += raw.not_in_file("PLOAD4", "elements", map(int, loaded), bulk.solid.keys() | bulk.others)
+    return raw.RawMesh(
         numbers=numbers,
         points=points,
-        elements=gathered(bulk.solids),
-        bodies={key: index(some) for key, some in bulk.bodies.items()},
+        elements=raw.gathered(bulk.solids),
+        bodies={key: raw.index(some) for key, some in bulk.bodies.items()},
         node_sets={name: _within(some, numbers) for name, some in bulk.sets.items()},
         side_sets=_loaded(bulk.loads, bulk.solid),
-        face_elements={name: face_blocks(some) for name, some in bulk.skins.items()},
-        extra=index(node for some in bulk.skins.values() for nodes in some for node in nodes),
-        references=index(bulk.references),
-        turned=index(n for n, (_, _, cd) in bulk.grids.items() if (bulk.default[1] if cd is None else cd) != 0),
+        face_elements={name: raw.face_blocks(some) for name, some in bulk.skins.items()},
+        extra=raw.index(node for some in bulk.skins.values() for nodes in some for node in nodes),
+        references=raw.index(bulk.references),
+        turned=raw.index(n for n, (_, _, cd) in bulk.grids.items() if (bulk.default[1] if cd is None else cd) != 0),
         notes=tuple(notes),
     )
 
@@ -107,15 +95,15 @@ def _within(ranges: list[tuple[int, int]], numbers: Index) -> Index:
     """Numbers of a set: those given one by one, and those of a range that there are."""
     ranked = np.sort(numbers)
     found = [
-        index([first]) if first == last else ranked[slice(*np.searchsorted(ranked, [first, last + 1]))]
+        raw.index([first]) if first == last else ranked[slice(*np.searchsorted(ranked, [first, last + 1]))]
         for first, last in ranges
     ]
-    return np.unique(joined(found))
+    return np.unique(raw.joined(found))
 
 
 def _case_sets(path: Path) -> tuple[dict[str, list[tuple[int, int]]], list[str]]:
     """SET n = ... of the case control that no command takes as elements, and notes on those that one does."""
-    head = re.split(r"BEGIN\s+BULK", read_text(path, "bulk data"), maxsplit=1, flags=re.I)
+    head = re.split(r"BEGIN\s+BULK", raw.read_text(path, "bulk data"), maxsplit=1, flags=re.I)
     if len(head) < 2:
         return {}, []
     used = re.finditer(r"^[ \t]*+([A-Z0-9]+)\s*+(?:\([^)]*\))?\s*=\s*(\d+)\s*(?:\$.*)?$", head[0], re.I | re.M)
@@ -173,11 +161,11 @@ def _loaded(loads: list[tuple[list[str], str]], where_of: dict[int, tuple[str, l
     return {name: np.array(rows) for name, rows in out.items()}
 
 
-def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
+def read_matrices(path: Path, names: tuple[str, str]) -> raw.Matrices:
     """Read real DMIG entries: G and C of the column, then rows of G, C, value; form 6 gives one triangle."""
     from scipy.sparse import coo_array
 
-    if not read_text(path, "bulk data").endswith("\n"):
+    if not raw.read_text(path, "bulk data").endswith("\n"):
         raise ReadError(f"{path} ends in the middle of a line; it is cut short")
     heads: dict[str, int] = {}
     entries: dict[str, list[tuple[tuple[int, int], tuple[int, int], float]]] = {}
@@ -185,7 +173,7 @@ def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
         if card != "DMIG":
             continue
         name = fields[0].upper()
-        with understood(f"{where}: DMIG {name} cannot be read"):
+        with raw.understood(f"{where}: DMIG {name} cannot be read"):
             if fields[1] == "0":
                 if int(fields[3] or 1) > 2:
                     raise ReadError(f"{where}: DMIG {name} is complex; stiffness and mass are real")
@@ -204,11 +192,11 @@ def read_matrices(path: Path, names: tuple[str, str]) -> Matrices:
     place = {key: i for i, key in enumerate(keys)}
     out = []
     for name, some in zip(names, found, strict=True):
-        i, j = index(place[row] for row, _, _ in some), index(place[column] for _, column, _ in some)
+        i, j = raw.index(place[row] for row, _, _ in some), raw.index(place[column] for _, column, _ in some)
         one = heads.get(name.upper(), 6) == 6
-        once(f"{path.name}, DMIG {name}", np.minimum(i, j) if one else i, np.maximum(i, j) if one else j, len(keys))
+        raw.once(f"{path.name}, DMIG {name}", np.minimum(i, j) if one else i, np.maximum(i, j) if one else j, len(keys))
         A = coo_array(([value for *_, value in some], (i, j)), shape=(len(keys), len(keys))).tocsr()
-        out.append(both_triangles(A) if one else A)
+        out.append(raw.both_triangles(A) if one else A)
     return out[0], out[1], np.array(keys, dtype=np.int64)
 
 

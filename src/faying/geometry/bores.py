@@ -7,7 +7,9 @@ from itertools import combinations
 import numpy as np
 
 from faying.fe.line import FACING, Line
+from faying.fe.outline import edges_of
 from faying.geometry.face_facts import FaceFacts, GeometryFacts
+from faying.geometry.face_triangles import welded
 from faying.typing import Array
 
 FULL_TURN = 0.95  # share of a turn from which the faces of a bore close
@@ -212,13 +214,9 @@ def seat(facts: GeometryFacts, bore: Bore, *, top: bool) -> FaceFacts | None:
 
 def room_around(facts: GeometryFacts, face: FaceFacts, bore: Bore) -> float:
     """Distance [m] from the axis of a bore to the nearest edge of a plane around it, the edge of the bore aside."""
-    corners = facts.triangles(face)
-    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    keys = np.round(edges * 1e9).astype(np.int64)
-    order = np.lexsort((keys[:, 0, 2], keys[:, 0, 1], keys[:, 0, 0]))
-    edges, keys = edges[order], keys[order]
-    both = {(tuple(a), tuple(b)) for a, b in keys}
-    rim = np.array([edge for edge, (a, b) in zip(edges, keys, strict=True) if (tuple(b), tuple(a)) not in both])
+    points, triangles = welded(facts.triangles(face), 1e-9)
+    edges, first, last = edges_of(triangles)
+    rim = points[edges[first == last]]
     start, along = rim[:, 0], rim[:, 1] - rim[:, 0]
     point = bore.point + ((np.array(face.centre) - bore.point) @ bore.axis) * bore.axis
     share = np.clip(np.einsum("ei,ei->e", point - start, along) / np.einsum("ei,ei->e", along, along), 0.0, 1.0)

@@ -44,15 +44,12 @@ class FaceTriangles:
     @classmethod
     def of(cls, facts: GeometryFacts, named: Mapping[str, tuple[FaceFacts, ...]]) -> "FaceTriangles":
         """The triangles of the named faces; corners that coincide are one."""
-        keys = np.round(facts.corners.reshape(-1, 3) / (1e-9 * facts.size)).astype(np.int64)
-        _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        rows = place.reshape(-1, 3)
+        points, rows = welded(facts.corners, 1e-9 * facts.size)
         index = {face.side: k for k, face in enumerate(facts.faces)}
         triangles = {
             name: rows[np.isin(facts.face_of, [index[face.side] for face in faces])] for name, faces in named.items()
         }
         owner = {name: faces[0].part for name, faces in named.items()}
-        points = facts.corners.reshape(-1, 3)[first]
         return cls(points=points, triangles=triangles, face_part=owner, size=facts.size)
 
     def face(self, name: str) -> Blocks:
@@ -75,3 +72,11 @@ class FaceTriangles:
         good = twice > 0
         middles = (a + b + c)[good] / 3
         return FacePieces(positions=middles, weights=twice[good] / 2, normals=across[good] / twice[good][:, None])
+
+
+def welded(corners: Array, close: float) -> tuple[Array, Index]:
+    """Points (n, 3) and triangles (t, 3) between them of corners (t, 3, 3) [m]; those nearer than `close` are one."""
+    flat = corners.reshape(-1, 3)
+    keys = np.round(flat / close).astype(np.int64)
+    _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    return flat[first], place.reshape(-1, 3)

@@ -66,11 +66,7 @@ def distance_to(point: Array, corners: Array) -> float:
 def nearest_places(point: Array, corners: Array) -> tuple[Array, Array]:
     """Place on each triangle (t, 3, 3) nearest to a point (3,): weights of its corners (t, 3), distance [m] (t,)."""
     foot = barycentric(corners, point)
-    foot[(foot < 0).any(axis=1)] = (
-        1.0,
-        0.0,
-        0.0,
-    )  # beside the triangle; a side holds this corner, too
+    foot[(foot < 0).any(axis=1)] = np.eye(3)[0]  # beside the triangle: a corner, which the sides hold, too
     places = [foot]
     for first, second in ((0, 1), (1, 2), (2, 0)):
         along = corners[:, second] - corners[:, first]

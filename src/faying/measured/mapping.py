@@ -46,6 +46,8 @@ def fit_transform(test: Any, model: Any) -> Transform:
     after Umeyama 1991, doi:10.1109/34.88573). Raises InputError for fewer than three pairs or pairs on one line, and
     where the fit leaves more than a tenth of the points' spread: a mirrored frame, a wrong unit or a wrong pair.
     """
+    from scipy.spatial.transform import Rotation
+
     a, b = np.asarray(test, float), np.asarray(model, float)
     if a.shape != b.shape or a.ndim != 2 or a.shape[1:] != (3,) or len(a) < 3:
         raise InputError(
@@ -57,9 +59,7 @@ def fit_transform(test: Any, model: Any) -> Transform:
         raise InputError(
             "the points of the pairs are on one line, about which the test can turn; add one off that line"
         )
-    u, _, vt = np.linalg.svd(a0.T @ b0)
-    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(vt.T @ u.T))])
-    rotation = vt.T @ flip @ u.T
+    rotation = np.asarray(Rotation.align_vectors(b0, a0)[0].as_matrix())
     shift = b.mean(axis=0) - rotation @ a.mean(axis=0)
     rms = float(np.sqrt(np.mean(np.sum((a @ rotation.T + shift - b) ** 2, axis=1))))
     ratio = np.linalg.norm(b0) / np.linalg.norm(a0)

@@ -164,43 +164,20 @@ def _value(text: str, at: int) -> tuple[int, int, int]:
     """Where a value begins and ends, which may hold texts and comments over several lines, and where its line ends."""
     while at < len(text) and text[at] in " \t":
         at += 1
-    begin = end = at
-    depth = 0
-    while at < len(text):
-        letter = text[at]
-        if letter in "\"'":
-            end = at = _end_of_text(text, at)
-            continue
-        if letter == "#":
-            at = _end_of_line(text, at)
-            if depth <= 0:
-                return begin, end, at
-            continue
-        depth += (letter in "[{") - (letter in "]}")
-        at += 1
-        if letter == "\n" and depth <= 0:
-            return begin, end, at
-        if letter not in " \t\r\n":
-            end = at
-    return begin, end, at
+    end, depth = at, 0
+    for piece in _PIECE.finditer(text, at):
+        word = piece[0]
+        if (word[0] == "#" or word == "\n") and depth <= 0:
+            return at, end, piece.end()
+        depth += (word in "[{") - (word in "]}")
+        if word[0] not in "# \t\r\n":
+            end = piece.end()
+    return at, end, len(text)
 
 
-def _end_of_text(text: str, at: int) -> int:
-    """Behind a text in quotes; three of them hold line breaks."""
-    mark = text[at] * 3 if text.startswith(text[at] * 3, at) else text[at]
-    at += len(mark)
-    while at < len(text):
-        if mark[0] == '"' and text[at] == "\\":
-            at += 2
-        elif text.startswith(mark, at):
-            return at + len(mark)
-        elif len(mark) == 1 and text[at] == "\n":
-            return at
-        else:
-            at += 1
-    return at
-
-
+# texts, of which those in three quotes hold line breaks; comments; all else letter by letter
+_QUOTED = (r'"""(?:\\.|(?!""").)*+(?:""")?', r"'''(?:(?!''').)*+(?:''')?", r'"(?:\\.|[^"\\\n])*+"?', r"'[^'\n]*+'?")
+_PIECE = re.compile(rf"{'|'.join(_QUOTED)}|#[^\n]*+\n?|.", re.DOTALL)
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 # comments by which `faying new` says where a value is from, or what follows from it
 _OF_VALUE = re.compile(

@@ -25,6 +25,7 @@ from faying.errors import FayingError, InputError
 from faying.fe.line import across
 from faying.fe.sides import NamedFaces
 from faying.form.face_axes import FaceAxes
+from faying.geometry.mesh_facts import nearest_places
 from faying.geometry.seen_along import RING, circle, hits
 from faying.joint.joint_law import JointLaw
 from faying.joint.load_path import BoltLine, seat_ring
@@ -256,14 +257,9 @@ def _passed_at(line: BoltLine, corners: Array) -> Array:
     """Depths [m] below the head at which a bolt passes triangles (t, 3, 3): where each is nearest to the axis."""
     plane = across(line.axis)
     flat = (corners - line.seats[0]) @ plane
-    inside, depth = hits(flat, line.depth(corners.reshape(-1, 3)).reshape(-1, 3), np.zeros((1, 2)))
-    side, flat_side = np.roll(corners, -1, axis=1) - corners, np.roll(flat, -1, axis=1) - flat
-    size = np.maximum((flat_side**2).sum(axis=2), np.finfo(float).tiny)
-    along = np.clip(-(flat * flat_side).sum(axis=2) / size, 0.0, 1.0)
-    on_side = corners + along[:, :, None] * side
-    best = np.argmin(np.linalg.norm((on_side - line.seats[0]) @ plane, axis=2), axis=1)
-    nearest = np.where(inside, line.seats[0] + depth * line.axis, on_side[np.arange(len(best)), best])
-    normals = np.cross(side[:, 0], side[:, 1])
+    weights, _ = nearest_places(np.zeros(3), np.pad(flat, ((0, 0), (0, 0), (0, 1))))
+    nearest = np.einsum("tc,tcx->tx", weights, corners)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]
     return line.depth(nearest[line.passes(nearest, normals)])
 

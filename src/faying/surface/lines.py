@@ -20,18 +20,14 @@ def find_lines(scan: AreaHeights, power: Array, frequency: Array) -> Mask:
     Where peaks hold most of the power in more than a quarter of the rings (six an octave) of the usable band, nothing
     is marked: there the lines are the surface (a Weierstrass-Mandelbrot series, a regular texture).
     """
+    from scipy.ndimage import median
+
     lowest = 1 / min(scan.size)
     ring = np.log2(np.maximum(frequency / lowest, 0.5)) * 6
     index = (ring - ring.min()).astype(np.int32).ravel()
-    flat = power.ravel()
-    order = np.argsort(index, kind="stable")
-    bounds = np.searchsorted(index[order], np.arange(index.max() + 2))
-    level = np.ones(index.max() + 1)
-    for k in range(len(level)):
-        part = flat[order[bounds[k] : bounds[k + 1]]]
-        if part.size:
-            level[k] = max(float(np.median(part)) / np.log(2), 1e-300)
-    white = (flat / level[index]).reshape(power.shape)
+    rings, here = np.unique(index, return_inverse=True)
+    level = np.maximum(median(power.ravel(), index, rings) / np.log(2), 1e-300)
+    white = power / level[here].reshape(power.shape)
     rows, columns = np.nonzero((white > THRESHOLD) & (frequency > 2 * lowest) & (frequency < 0.45 / max(scan.spacing)))
     marked = np.zeros(power.shape, bool)
     if not 0 < len(rows) <= MAX_CANDIDATES:
