@@ -548,6 +548,8 @@ class FittedBolt(BoltPlace):
     @cached_property
     def mass(self) -> Any | None:
         """Sparse mass [kg]: half of the shank, and head or nut with its washers, at each seat; None without a shank."""
+        from scipy.sparse import diags_array
+
         bolt = self.bolt
         if bolt.diameter is None or bolt.material is None:
             return None
@@ -558,11 +560,7 @@ class FittedBolt(BoltPlace):
         # the part of the bolt in the nut fills its thread, so the nut counts as solid
         nut = hexagon * NUT_HEIGHT * d if bolt.nut_mass is None and self.thread is None else bolt.nut_mass or 0.0
         washers = sum(w.mass for w in bolt.washers) / 2
-        ends = np.array([shank / 2 + head + washers, shank / 2 + nut + washers])
-        from scipy.sparse import diags_array
-
-        lumps = np.zeros(12)
-        lumps[:3], lumps[6:9] = ends
+        lumps = np.repeat([shank / 2 + head + washers, 0.0, shank / 2 + nut + washers, 0.0], 3)
         return (self.motion.T @ diags_array(lumps) @ self.motion).tocsr()
 
     @property

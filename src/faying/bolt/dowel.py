@@ -74,14 +74,13 @@ class Dowel:
             raise InputError(f"{what} names the wall {twice[0]!r} twice; name the hole of each part once")
         if ends is not None and (len(ends) != 2 or any(isinstance(end, str) or len(end) != 3 for end in ends)):
             raise InputError(f"{what}: ends = {shortened(ends)}; give two points of three coordinates")
+        points = None if ends is None else tuple(tuple(number(x, f"{what}: ends", "m") for x in end) for end in ends)
         values = {
             "name": name,
             "walls": tuple(walls),
             "material": solid_of(material, what),
             "diameter": None if diameter is None else number(diameter, f"{what}: diameter", "m", least=0),
-            "ends": None
-            if ends is None
-            else tuple(tuple(number(x, f"{what}: ends", "m") for x in end) for end in ends),
+            "ends": points,
         }
         for key, value in values.items():
             object.__setattr__(self, key, value)

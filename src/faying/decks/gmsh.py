@@ -16,14 +16,8 @@ _KINDS = {4: ("tet4", 4), 5: ("hex8", 8), 6: ("wedge6", 6), 11: ("tet10", 10), 1
 _EARLIER = (b"1", b"2", b"2.0", b"2.1", b"2.2")  # their sections are the same
 _FACES = {2: 3, 3: 4, 9: 6, 16: 8}
 _PASSED = {1: 2, 8: 3, 15: 1}
-_UNKNOWN = {
-    7: "pyramids",
-    10: "quadrangles of 9 nodes",
-    12: "bricks of 27 nodes",
-    13: "wedges of 18 nodes",
-    14: "pyramids",
-    19: "pyramids",
-}
+_UNKNOWN = dict.fromkeys((7, 14, 19), "pyramids")
+_UNKNOWN |= {10: "quadrangles of 9 nodes", 12: "bricks of 27 nodes", 13: "wedges of 18 nodes"}
 _ORDER = {
     "tet10": from_edges("tet10", ((0, 1), (1, 2), (0, 2), (0, 3), (2, 3), (1, 3))),
     "hex20": from_edges(

@@ -232,8 +232,7 @@ def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
     if np.any(count > 1):
         node, axis = pairs[count > 1][0]
         raise InputError(f"{name}: node {node} direction {axis} is listed twice")
-    for what, values in (("stiffness", K.diagonal()), ("mass", M.diagonal())):
-        bad = values <= 0 if what == "stiffness" else values < 0
+    for what, bad in (("stiffness", K.diagonal() <= 0), ("mass", M.diagonal() < 0)):
         if np.any(bad):
             node, axis = dofs[bad][0]
             raise InputError(

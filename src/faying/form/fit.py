@@ -132,15 +132,9 @@ class FormFit:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the points, ready for JSON, SI units."""
-        numbers = {
-            "length_along": self.lengths[0],
-            "length_across": self.lengths[1],
-            "flatness": self.zone.flatness,
-            "crown_along": self.crown_along,
-            "crown_across": self.crown_across,
-            "twist": self.twist,
-            "rest": self.rest,
-        }
+        sizes = {"length_along": self.lengths[0], "length_across": self.lengths[1], "flatness": self.zone.flatness}
+        shapes = {"crown_along": self.crown_along, "crown_across": self.crown_across, "twist": self.twist}
+        numbers = sizes | shapes | {"rest": self.rest}
         return {
             "points": len(self.values),
             "values_are": "gaps" if self.is_gap else "heights",

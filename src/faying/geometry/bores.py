@@ -230,9 +230,8 @@ def room_around(facts: GeometryFacts, face: FaceFacts, bore: Bore) -> float:
 
 
 def _one_cylinder(one: FaceFacts, two: FaceFacts) -> bool:
-    assert one.radius is not None
-    assert two.radius is not None
-    if abs(one.radius - two.radius) > 1e-4 * one.radius or not one.line.holds(two.line, 1e-3 * one.radius):
+    radius, other = one.radius or 0.0, two.radius or 0.0
+    if abs(radius - other) > 1e-4 * radius or not one.line.holds(two.line, 1e-3 * radius):
         return False
     low, high = one.line.span(two.line, 0.0, two.length or 0.0)
     return low <= (one.length or 0.0) + LEVEL and high >= -LEVEL

@@ -447,12 +447,11 @@ def _gap(one: FaceFacts, two: FaceFacts) -> float | None:
     if one.hole == two.hole:
         return None
     hole, shaft = (one, two) if one.hole else (two, one)
-    assert hole.radius is not None
-    assert shaft.radius is not None
-    gap = hole.radius - shaft.radius
-    if not hole.line.holds(shaft.line, abs(gap) + ROUND * hole.radius):
+    radius = hole.radius or 0.0
+    gap = radius - (shaft.radius or 0.0)
+    if not hole.line.holds(shaft.line, abs(gap) + ROUND * radius):
         return None
-    return 0.0 if abs(gap) < ROUND * hole.radius else gap
+    return 0.0 if abs(gap) < ROUND * radius else gap
 
 
 def _facing_area(first: Array, second: Array, reach: float) -> float:

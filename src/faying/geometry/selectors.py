@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
 
 from faying.errors import InputError
 from faying.fe.line import FACING
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, Point
-from faying.units import show, show_area
+from faying.units import in_mm, show, show_area
 
 WITHIN = 1e-3  # m: a point farther from a face than this does not mean it
 AMBIGUOUS = 1e-6  # m: faces whose distances differ by less are not told apart
@@ -121,11 +122,10 @@ def listed(faces: Sequence[FaceFacts]) -> str:
     """Number, area, centre and normal of faces, the largest first."""
     words = []
     for face in sorted(faces, key=lambda face: -face.area)[:LISTED]:
-        where = ", ".join(f"{1e3 * x:.4g}" for x in face.centre)
         looks = f"radius {1e3 * face.radius:.4g} mm" if face.radius is not None else face.kind
         if face.normal is not None:
             looks = f"normal ({', '.join(f'{x:.3g}' for x in face.normal)})"
-        words.append(f"number {face.number} ({show_area(face.area)} about ({where}) mm, {looks})")
+        words.append(f"number {face.number} ({show_area(face.area)} about {in_mm(face.centre)}, {looks})")
     more = len(faces) - LISTED
     return "; ".join(words) + (f"; and {more} more" if more > 0 else "")
 
@@ -135,7 +135,7 @@ def _touching(
 ) -> list[FaceFacts]:
     gaps: dict[int, float] = {}
     for contact in facts.contacts:
-        for one, two in ((contact.first, contact.second), (contact.second, contact.first)):
+        for one, two in permutations(contact.sides):
             if one[0] == selector.part and two[0] == selector.touching:
                 gaps[one[1]] = min(gaps.get(one[1], np.inf), abs(contact.gap))
     found = [face for face in faces if gaps.get(face.number, np.inf) <= close]

@@ -91,10 +91,12 @@ def _check(force: Array, response: Array, outputs: int, sampling_rate: float) ->
 
 
 def _window(name: str, n: int, decay: float) -> Array:
-    if name == "none":
-        return np.ones(n)
-    if name == "exponential":
-        return np.asarray(np.exp(-decay * np.arange(n)))
-    if name == "hann":
-        return np.asarray(np.sin(np.pi * np.arange(n) / n) ** 2)
-    raise InputError(f'window {name!r}: use "none", "hann" or "exponential"')
+    k = np.arange(n)
+    windows: dict[str, Array] = {
+        "none": np.ones(n),
+        "exponential": np.exp(-decay * k),
+        "hann": np.sin(np.pi * k / n) ** 2,
+    }
+    if name not in windows:
+        raise InputError(f'window {name!r}: use "none", "hann" or "exponential"')
+    return windows[name]

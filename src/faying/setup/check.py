@@ -33,11 +33,12 @@ from faying.setup.sketch import Sketch
 from faying.study.declaration.reader import StudyFaults
 from faying.study.keys.face import place_name
 from faying.study.keys.geometry import mesh_of
+from faying.study.keys.joint import JointChoice
 from faying.study.keys.surface import Surface
 from faying.study.study import Study
 from faying.style import Summary
 from faying.text import cut
-from faying.units import show, show_area
+from faying.units import in_mm, show, show_area
 
 MAX_MESHED = 400_000  # unknowns, as estimated: meshing them takes some ten seconds
 TOO_MUCH = 1.5  # times the free memory: a fault, as estimated unknowns are within a factor of 2.5
@@ -357,47 +358,41 @@ def _coarser(
 
 def _contacts(sketch: Sketch, found: _Findings) -> None:
     """Whether the faces of each joint meet, and how far apart they lie."""
-    spec, size = sketch.study.geometry, sketch.facts.size
     every = sorted((*sketch.study.joints, *sketch.study.bonds), key=lambda joint: joint.number)
     joints = {joint.name: joint.faces for joint in every}
     found.tried("contact", "joint", lambda: each_pair_once(joints))
     for joint in every:
-        key = f"joint[{joint.number}].faces"
-        parts = [sketch.mesh.face_part[face] for face in joint.faces]
-        if parts[0] == parts[1]:
-            text = f"faces {joint.faces[0]!r} and {joint.faces[1]!r} are both on part {parts[0]!r}; a joint needs two"
-            found.add("fault", "contact", text, key)
-            continue
-        meets = sketch.contacts(joint.faces)
-        if not meets:
-            names = f"{joint.faces[0]!r} and {joint.faces[1]!r}"
-            text = f"joint {joint.name!r}: its faces {names} do not look at each other"
-            if any(face.kind == "other" for name in joint.faces for face in sketch.named[name]):
-                found.add("note", "contact", f"{text} as far as planes and cylinders show; they are curved", key)
-            else:
-                text += f" within {show(0.01 * size, 'm')}; `faying faces` lists what does"
-                found.add("fault", "contact", text, key)
-            continue
-        widest = max(abs(contact.gap) for contact in meets)
-        area = sum(contact.area for contact in meets)
-        reach = joint.search_distance or 0.01 * size
-        if joint.bonded and widest > max(TOUCHING * size, spec.snap):
-            text = f"joint {joint.name!r} is bonded, but its faces are {show(widest, 'm')} apart"
-            found.add("fault", "contact", f"{text}; move a part, or give geometry.snap", key)
-        elif joint.bonded:
-            text = f"joint {joint.name!r}: its faces are bonded over {show_area(area)}"
-            found.add("ok", "contact", text, key)
-        elif widest > reach:
-            text = f"joint {joint.name!r}: its faces are {show(widest, 'm')} apart, more than {show(reach, 'm')}"
-            found.add("fault", "contact", f"{text}; move a part, or give search_distance", key)
-        elif widest > max(TOUCHING * size, spec.snap):
-            where = ", ".join(f"{1e3 * x:.4g}" for x in sketch.facts.face(*meets[0].first).centre)
-            text = f"joint {joint.name!r}: a gap of {show(widest, 'm')} between its faces about ({where}) mm stays open"
-            found.add(
-                "note", "gap", f"{text} until bolts close it; geometry.snap of as much counts it as touching", key
-            )
-        else:
-            found.add("ok", "contact", f"joint {joint.name!r}: its faces touch over {show_area(area)}", key)
+        found.add(*_contact(sketch, joint), f"joint[{joint.number}].faces")
+
+
+def _contact(sketch: Sketch, joint: JointChoice) -> tuple[Level, str, str]:
+    """Level, code and text of what there is to say of the faces of one joint."""
+    who, size, pair = f"joint {joint.name!r}", sketch.facts.size, " and ".join(map(repr, joint.faces))
+    parts = [sketch.mesh.face_part[face] for face in joint.faces]
+    if parts[0] == parts[1]:
+        return "fault", "contact", f"faces {pair} are both on part {parts[0]!r}; a joint needs two"
+    meets = sketch.contacts(joint.faces)
+    if not meets:
+        text = f"{who}: its faces {pair} do not look at each other"
+        if any(face.kind == "other" for name in joint.faces for face in sketch.named[name]):
+            return "note", "contact", f"{text} as far as planes and cylinders show; they are curved"
+        return "fault", "contact", f"{text} within {show(0.01 * size, 'm')}; `faying faces` lists what does"
+    widest = max(abs(contact.gap) for contact in meets)
+    apart, area = show(widest, "m"), show_area(sum(contact.area for contact in meets))
+    reach, is_open = joint.search_distance or 0.01 * size, widest > max(TOUCHING * size, sketch.study.geometry.snap)
+    if joint.bonded and is_open:
+        remedy = "move a part, or give geometry.snap"
+        return "fault", "contact", f"{who} is bonded, but its faces are {apart} apart; {remedy}"
+    if joint.bonded:
+        return "ok", "contact", f"{who}: its faces are bonded over {area}"
+    if widest > reach:
+        remedy = "move a part, or give search_distance"
+        return "fault", "contact", f"{who}: its faces are {apart} apart, more than {show(reach, 'm')}; {remedy}"
+    if is_open:
+        text = f"{who}: a gap of {apart} between its faces about {in_mm(sketch.facts.face(*meets[0].first).centre)}"
+        remedy = "geometry.snap of as much counts it as touching"
+        return "note", "gap", f"{text} stays open until bolts close it; {remedy}"
+    return "ok", "contact", f"{who}: its faces touch over {area}"
 
 
 def _placed(bolt: Bolt | SolidBolt, mesh: FaceTriangles) -> BoltPlace | SolidPlace:

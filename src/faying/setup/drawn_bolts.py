@@ -210,11 +210,12 @@ def _bearing(row: _Row, end: int, *, alone: bool = False) -> Bearing | None:
 def _seat(facts: GeometryFacts, row: _Row, end: int) -> tuple[FaceFacts, ...]:
     """The faces that are pressed there: those that the bearing touches, else the plane at the end of the hole."""
     bearing = _bearing(row, end)
+    pressing = None if bearing is None else bearing.face.side
     areas: dict[str, float] = {}
     touched: list[FaceFacts] = []
-    for contact in facts.contacts if bearing is not None else ():
+    for contact in facts.contacts:
         for one, two in permutations(contact.sides):
-            if bearing is not None and one == bearing.face.side and abs(contact.gap) <= CLOSE:
+            if one == pressing and abs(contact.gap) <= CLOSE:
                 touched.append(facts.face(*two))
                 areas[two[0]] = areas.get(two[0], 0.0) + contact.area
     if touched:

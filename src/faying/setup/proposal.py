@@ -170,9 +170,8 @@ def touching(facts: GeometryFacts) -> list[TouchingFaces]:
     met = {frozenset(one.parts) for one in touching}
     near = [one for one in plane if frozenset(one.parts) not in met and one.gap > 0]
     least: dict[frozenset[str], float] = {}
-    for one in near:
-        pair = frozenset(one.parts)
-        least[pair] = min(least.get(pair, np.inf), one.gap)
+    for one in sorted(near, key=lambda one: one.gap):
+        least.setdefault(frozenset(one.parts), one.gap)
     return [*touching, *(one for one in near if one.gap <= least[frozenset(one.parts)] + close)]
 
 

@@ -221,16 +221,16 @@ def _beside(
         text += "at its hole (cone of VDI 2230)"
     if reach is None:
         yield "ok", "pressure", f"{text}; how far {name} reaches is known once it is solved", key
-    elif mean > reach:
-        text += (
-            f"; {name} ends at {show(reach, 'Pa', digits=3)}, below the mean: lower the preload, widen the joint, or "
-        )
-        yield "note", "law-reach", f"{text}take a law that reaches further (`faying models`)", key
+        return
+    end = show(reach, "Pa", digits=3)
+    if mean > reach:
+        remedy = "lower the preload, widen the joint, or take a law that reaches further (`faying models`)"
+        yield "note", "law-reach", f"{text}; {name} ends at {end}, below the mean: {remedy}", key
     elif highest > reach:
-        text += f"; {name} ends at {show(reach, 'Pa', digits=3)}: the result gives bounds where the pressure is higher"
-        yield "note", "law-reach", text, key
+        bounds = "the result gives bounds where the pressure is higher"
+        yield "note", "law-reach", f"{text}; {name} ends at {end}: {bounds}", key
     else:
-        yield "ok", "pressure", f"{text}; {name} reaches {show(reach, 'Pa', digits=3)}", key
+        yield "ok", "pressure", f"{text}; {name} reaches {end}", key
 
 
 def _greatest(sketch: Sketch, place: BoltPlace | SolidPlace) -> float:

@@ -160,8 +160,9 @@ def mean_peak_to_valley(scan: AreaHeights | LineHeights | Prepared) -> float:
     """
     ready = scan if isinstance(scan, Prepared) else prepared(scan)
     z = ready.scan.heights
-    found = []
-    for lines in (z[None],) if z.ndim == 1 else (z, z.T):
-        parts = [part for part in np.array_split(lines, LENGTHS, axis=1) if part.shape[1]]
-        found.append(float(np.mean([np.ptp(part, axis=1).mean() for part in parts])))
-    return max(found)
+
+    def mean(lines: Array) -> float:
+        parts = (part for part in np.array_split(lines, LENGTHS, axis=1) if part.shape[1])
+        return float(np.mean([np.ptp(part, axis=1).mean() for part in parts]))
+
+    return mean(z[None]) if z.ndim == 1 else max(mean(z), mean(z.T))

@@ -163,7 +163,6 @@ class StructureFunction:
     lag: Array
     value: Array
     pairs: Array
-    axes: int
 
 
 def _products(z: Array, known: Array, shape: tuple[int, ...]) -> tuple[Array, Array]:
@@ -221,6 +220,4 @@ def structure_function(
     lag = np.bincount(bins, np.where(use, r.ravel(), 0.0), n)[1:]
     number = np.asarray(np.bincount(bins, np.where(use, pairs.ravel(), 0.0), n)[1:], float)
     good = count > 0
-    return StructureFunction(
-        lag=lag[good] / count[good], value=value[good] / count[good], pairs=number[good], axes=len(spacing)
-    )
+    return StructureFunction(lag=lag[good] / count[good], value=value[good] / count[good], pairs=number[good])

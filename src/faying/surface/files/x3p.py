@@ -6,7 +6,6 @@ is unpacked, XML with a document type (where entity attacks live) is refused, an
 
 import hashlib
 import zipfile
-from collections.abc import Iterator
 from math import isfinite, prod
 from pathlib import Path
 from typing import Any
@@ -75,23 +74,9 @@ def _member(archive: zipfile.ZipFile, name: str, limit: int, path: Path) -> byte
         raise ReadError(f"{path}: {name} inside the X3P archive is damaged ({fault}); export the file again") from fault
 
 
-def _strip(tag: str) -> str:
-    return tag.rsplit("}", 1)[-1]
-
-
-def _walk(root: ElementTree.Element, *names: str) -> Iterator[ElementTree.Element]:
-    if not names:
-        yield root
-        return
-    for child in root:
-        if _strip(child.tag) == names[0]:
-            yield from _walk(child, *names[1:])
-
-
 def _text(root: ElementTree.Element, *names: str) -> str | None:
-    for found in _walk(root, *names):
-        return (found.text or "").strip()
-    return None
+    found = root.find("/".join(f"{{*}}{name}" for name in names))  # in any namespace, or in none
+    return None if found is None else (found.text or "").strip()
 
 
 def _number(root: ElementTree.Element, path: Path, *names: str, default: float | None = None) -> float:
@@ -189,9 +174,7 @@ def _heights(archive: zipfile.ZipFile, root: ElementTree.Element, path: Path) ->
                 raise ReadError(f"{path}: {mask} marks {bits.size} points of {nx * ny}; the file is cut off")
             missing = bits[: nx * ny].reshape(ny, nx) == 0
         return z, missing
-    lists = list(_walk(root, "Record3", "DataList"))
-    datum = {tag for tag in {found.tag for part in lists for found in part} if _strip(tag) == "Datum"}
-    texts = [(found.text or "").strip() for part in lists for found in part if found.tag in datum]
+    texts = [(found.text or "").strip() for found in root.iterfind("{*}Record3/{*}DataList/{*}Datum")]
     if len(texts) != nx * ny:
         raise ReadError(f"{path}: main.xml lists {len(texts)} heights where {nx} x {ny} are due")
     try:
