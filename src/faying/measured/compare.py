@@ -277,7 +277,8 @@ def _overlay(
         notes.append("no FRF is between points that have a node; FRFs are not compared")
         return None, None, None, None
     outputs, inputs = tuple(frf.outputs[k] for k in o), tuple(frf.inputs[k] for k in i)
-    shared = replace(frf, values=frf.values[np.ix_(o, i)], outputs=outputs, inputs=inputs, coherence=None)
+    kept = replace(frf, values=frf.values[np.ix_(o, i)], outputs=outputs, inputs=inputs, coherence=None)
+    shared = replace(kept, window_decay=0.0, warnings=())
     ends = [
         (np.array([places[d.point] for d in side]), points.transform.directions([d.axis() for d in side]))
         for side in (outputs, inputs)
