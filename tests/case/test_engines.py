@@ -77,8 +77,9 @@ ESTIMATES = {"mesh_error": 5e-3, "error": 0.1}
 TOLERANCES = ESTIMATES | {"loss_factors": 1e-6, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
 RESPONSE = 2 * SHAPES["shapes"]  # of its greatest value; two shapes are in each term
 FREQUENCY, DAMPING = 1e-8, 1e-2
-# intervals and draws of waves, each in a small basis of its own, which is half as good at loads not trained on
-IN_A_BASIS = 4 * changed.TOLERANCE
+# intervals and draws of waves, each in a small basis of its own: at a load between those that it is trained on, two
+# bases were up to 8e-4 apart (T-specimen, 8 kN, waves)
+IN_A_BASIS = 10 * changed.TOLERANCE
 NO_SLIP = 1e-7  # damping ratio of modes that do not slip
 
 

@@ -156,7 +156,7 @@ def rows(found: Sequence[Bore], *, reach: float) -> list[Stack]:
     left = sorted(found, key=lambda bore: bore.slot is not None)  # a slot belongs to the round hole in its reach
     while left:
         first = left[0]
-        line = [bore for bore in left if _one_axis(first, bore)]
+        line = [bore for bore in left if on_one_axis(first, bore)]
         left = [bore for bore in left if bore not in line]
         narrow = [_narrowest([bore for bore in line if bore.part == part]) for part in {bore.part: 0 for bore in line}]
         row: list[Bore] = []
@@ -237,7 +237,8 @@ def _one_cylinder(one: FaceFacts, two: FaceFacts) -> bool:
     return low <= (one.length or 0.0) + LEVEL and high >= -LEVEL
 
 
-def _one_axis(one: Bore, two: Bore) -> bool:
+def on_one_axis(one: Bore, two: Bore) -> bool:
+    """Whether one bolt may run through two bores."""
     point = two.point
     for slot in (one.slot, two.slot):
         if slot is not None:  # a bolt may stand anywhere between the ends of a slot

@@ -6,7 +6,7 @@ from dataclasses import replace
 from faying.bolt.tapped import ENGAGED
 from faying.bolt.threads import COMMON, COMMON_PINS, METRIC, is_tapped, metric, size_for_hole
 from faying.bolt.vdi2230 import Head
-from faying.geometry.bores import Bore, Stack, bores, room_around, rows, seat
+from faying.geometry.bores import Bore, Stack, bores, on_one_axis, room_around, rows, seat
 from faying.geometry.face_facts import FaceFacts, GeometryFacts, TouchingFaces
 from faying.geometry.seats import countersink, lips
 from faying.setup.bolt_proposal import BoltProposal, to_nanometres
@@ -36,10 +36,13 @@ def found_bolts(
     found = [*fasteners.bolts]
     left: dict[tuple[str, str], list[Array]] = {}  # what is to be said of rows of holes -> their places [m]
     met = {side for contact in joints for side in contact.sides}
+    every = [bore for row in free for bore in row.bores]
     for stack in (one for row in free for one in _from_both_sides(row)):
         if 2 * min(bore.radius for bore in stack.bores) > WIDEST or takes_dowel(facts, stack):
             continue  # a pipe, a bearing, or a dowel
-        bolt = _in_slot(facts, stack) or (_in_row(facts, stack) if len(stack.bores) > 1 else _alone(facts, stack, met))
+        bolt: BoltProposal | str | None = _in_slot(facts, stack, every)
+        if bolt is None:
+            bolt = _in_row(facts, stack) if len(stack.bores) > 1 else _alone(facts, stack, met)
         if isinstance(bolt, str):
             widths = ", ".join(f"{2e3 * bore.radius:.4g} mm in {bore.part!r}" for bore in stack.bores)
             left.setdefault((widths, bolt), []).append(stack.middle)
@@ -84,8 +87,11 @@ def _alone(facts: GeometryFacts, stack: Stack, met: set[tuple[str, int]]) -> str
     return "end at a joint, where no hole and no slot of another part takes a bolt"
 
 
-def _in_slot(facts: GeometryFacts, stack: Stack) -> BoltProposal | None:
-    """A bolt whose nut, or head, pulls the lips of a T-slot beyond the end of a row of clearance holes."""
+def _in_slot(facts: GeometryFacts, stack: Stack, every: Sequence[Bore]) -> BoltProposal | None:
+    """A bolt whose nut, or head, pulls the lips of a T-slot beyond the end of a row of clearance holes.
+
+    every: the bores of all rows: a part with one on this axis, such as two plates farther on, has a bolt of its own.
+    """
     sizes = {size_for_hole(2 * bore.radius) for bore in stack.bores}
     size = sizes.pop()
     if sizes or size is None:
@@ -95,7 +101,8 @@ def _in_slot(facts: GeometryFacts, stack: Stack) -> BoltProposal | None:
         bore, other = stack.ends[top], stack.ends[not top]
         found = lips(facts, bore, top=top, shank=size / 1e3, ring=(hole, _washer(size)))
         under = seat(facts, other, top=not top) if found else None
-        if under is None:
+        owners = {face.part for face in found}
+        if under is None or any(one.part in owners and on_one_axis(bore, one) for one in every):
             continue
         outer, why, shape = _pressed_ring(size, room_around(facts, under, other))
         owner = found[0].part
