@@ -40,6 +40,20 @@ def test_a_structure_without_rigid_motion_has_a_report():
     assert "Rigid-body values" not in report.html(found, {"law": "<svg/>"})
 
 
+def test_without_figures_all_tables_are_written(tmp_path):
+    """The same words, and no picture."""
+    found = small_result()
+    (tmp_path / "plain").mkdir()
+    made = report.write(found, tmp_path)
+    plain = report.write(found, tmp_path / "plain", drawn=False)
+    assert {file.name for file in plain} == {"result.nc", "modes.csv", "report.html"}
+    assert any(file.suffix == ".svg" for file in made)
+    page, tables = ((file.parent / "report.html").read_text() for file in (made[0], plain[0]))
+    assert "<figure" in page
+    assert "<figure" not in tables
+    assert re.findall(r"<td[^>]*>[^<]*", tables) == re.findall(r"<td[^>]*>[^<]*", page)
+
+
 def test_names_of_any_kind_reach_files_and_figures(tmp_path):
     """Characters beyond ASCII, and what matplotlib and HTML would read as their own."""
     grid = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) * 1e-2

@@ -24,6 +24,7 @@ MIN_MODES = 3  # that the table has, however wide it is
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--all", "everything", is_flag=True, help="Print all tables and notes, not the answer alone.")
 @click.option("--no-files", is_flag=True, help="Write no files, only print.")
+@click.option("--no-figures", is_flag=True, help="Write the files and the report without figures: seconds less.")
 @click.option("--uff", is_flag=True, help="Write modes and frequency responses as universal files, too (.uff).")
 @click.option(
     "--engine",
@@ -43,6 +44,7 @@ def command(
     as_json: bool,
     everything: bool,
     no_files: bool,
+    no_figures: bool,
     uff: bool,
     engine: str,
     refine: str | None,
@@ -68,7 +70,7 @@ def command(
         files = []
         if hidden is not None:
             bar("report", len(every) - 1, len(every))
-            files = report.write(result, hidden)
+            files = report.write(result, hidden, drawn=not no_figures)
             files += universal.write(result, hidden) if uff else []
             files = [folder / file.name for file in files]
     show(as_json, result.to_dict, lambda: text(result, everything=everything), files, folder)

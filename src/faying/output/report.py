@@ -379,17 +379,17 @@ def figures(result: Result) -> dict[str, Any]:
     return out
 
 
-def write(result: Result, folder: Path) -> list[Path]:
+def write(result: Result, folder: Path, *, drawn: bool = True) -> list[Path]:
     """Write result.nc, modes.csv, the figures as SVG (mode shapes as PNG) and report.html into a folder that exists.
 
-    With a hammer test: comparison.csv, and its figures with test_ before their names.
+    With a hammer test: comparison.csv, and its figures with test_ before their names. drawn: whether there are figures.
     """
     made = [result.save(folder / RESULT_FILE), result.to_csv(folder / "modes.csv")]
     if result.hammer is not None:
         made.append(write_text(folder / "comparison.csv", result.hammer.csv_text()))
     pictures = {}
     with uncollected():
-        for name, figure in figures(result).items():
+        for name, figure in figures(result).items() if drawn else ():
             kind = name.removeprefix(TEST)
             file = folder / f"{name}.{'png' if kind in page.BITMAPS else 'svg'}"
             file, pictures[name] = page.saved(kind, figure, file, caption(name))
