@@ -82,14 +82,10 @@ class Backbones(Recorded):
     def notes(self) -> list[Note]:
         """What there is to say of them."""
         count, reached = len(self.frequencies), self.reached
-        out = [
-            Note(code="no-backbone", text=f"{number} of {count} samples have no backbone: {reason}")
-            for reason, number in self.reasons.items()
-        ]
-        out += [
-            Note(code="backbone-ends", text=f"{number} of {self.answered} backbones end early: {reason}")
-            for reason, number in self.ends.items()
-        ]
+        none = (f"{number} of {count} samples have no backbone: {reason}" for reason, number in self.reasons.items())
+        early = (f"{number} of {self.answered} backbones end early: {reason}" for reason, number in self.ends.items())
+        out = [Note(code="no-backbone", text=text) for text in none]
+        out += [Note(code="backbone-ends", text=text) for text in early]
         fewer = np.flatnonzero(reached < self.answered)
         if len(fewer):
             text = f"from {self.acceleration[fewer[0]]:.3g} m/s2 on the quantiles are those of the backbones that go on"

@@ -1,8 +1,9 @@
 """What a test tells of the parameters of a model: its numbers, on disk, and drawn."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
+from itertools import islice
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, final
 
 import numpy as np
@@ -98,10 +99,8 @@ class Identification(Recorded):
         head = f"Identification: {len(self.names)} parameters from {used} measured frequencies; `.table()` has all"
         rows = {"parameters": "5 % | 50 % | 95 %, sd over that of the prior"}
         shown = len(self.names) if len(self.names) <= MAX_PARAMETERS else MAX_PARAMETERS - 1
-        columns = zip(self.names[:shown], self.units, self.quantiles().T, self.posterior_contraction, strict=False)
-        for name, unit, row, share in columns:
-            cells = " | ".join(show(v, unit) if unit else f"{v:.4g}" for v in row)
-            rows[name if len(name) <= 25 else f"~{name[-24:]}"] = f"{cells}, {share:.2f}"
+        for name, cells, share in islice(self._parameters(), shown):
+            rows[name] = f"{' | '.join(cells)}, {share:.2f}"
         if len(self.names) > shown:
             rows["more"] = f"{len(self.names) - shown} parameters"
         rows["ln evidence"] = f"{self.log_evidence:.2f} +- {self.log_evidence_sd:.2f}"
@@ -157,16 +156,17 @@ class Identification(Recorded):
         losses = []
         if self.losses is not None and self.predicted_losses is not None:
             losses = ["", *self._lines(self.losses, self.predicted_losses, "test loss", "11.2e")]
-        return "\n".join([*self._parameter_lines(), "", *frequencies, *losses, "", *self._closing_lines()])
-
-    def _parameter_lines(self) -> list[str]:
         lines = [f"{'parameter':<26}{'5 %':>13}{'50 %':>13}{'95 %':>13}  sd/prior"]
-        for name, unit, row, share in zip(
-            self.names, self.units, self.quantiles().T, self.posterior_contraction, strict=True
-        ):
-            cells = "".join(f"{show(v, unit) if unit else f'{v:.4g}':>13}" for v in row)
-            lines.append(f"{name if len(name) <= 25 else f'~{name[-24:]}':<26}{cells}{share:>10.2f}")
-        return lines
+        for name, cells, share in self._parameters():
+            lines.append(f"{name:<26}{''.join(f'{cell:>13}' for cell in cells)}{share:>10.2f}")
+        return "\n".join([*lines, "", *frequencies, *losses, "", *self._closing_lines()])
+
+    def _parameters(self) -> Iterator[tuple[str, list[str], float]]:
+        """Name of each parameter, at most 25 letters; 5, 50 and 95 % with the unit; sd over that of the prior."""
+        columns = zip(self.names, self.units, self.quantiles().T, self.posterior_contraction, strict=True)
+        for name, unit, row, share in columns:
+            cells = [show(v, unit) if unit else f"{v:.4g}" for v in row]
+            yield name if len(name) <= 25 else f"~{name[-24:]}", cells, share
 
     def _lines(self, measured: Array, predicted: Array, title: str, form: str) -> list[str]:
         """What was measured (load, mode) beside its intervals (3, load, mode)."""
@@ -225,7 +225,7 @@ class Identification(Recorded):
             "correlation": listed(self.correlation),
             "log_evidence": self.log_evidence,
             "log_evidence_sd": self.log_evidence_sd,
-            "laws": [{f.name: getattr(law, f.name) for f in fields(law)} for law in self.laws],
+            "laws": [asdict(law) for law in self.laws],
             "loads": {"unit": "N", "values": listed(self.loads)},
             "left_out": listed(self.left_out),
             "test": {"unit": "Hz", "values": listed(self.test)},
@@ -250,7 +250,7 @@ class Identification(Recorded):
             },
             "evaluations": self.evaluations,
             "answered": self.answered,
-            "notes": [{f.name: getattr(note, f.name) for f in fields(note)} for note in self.notes],
+            "notes": [asdict(note) for note in self.notes],
         }
 
     # -- on disk
@@ -325,28 +325,22 @@ def mixed(found: Mapping[str, Found], prior: Mapping[str, float], *, seed: int =
     Returns:
         That of the likeliest law, with the evidence of all, its predicted frequencies drawn from all by their weights.
     """
-    names = list(found)
-    logs = [found[name].log_evidence + np.log(prior[name]) for name in names]
-    weights = weights_of(logs)
-    best = found[names[int(np.argmax(weights))]]
+    every = list(found.values())
+    weights = weights_of([one.log_evidence + np.log(prior[name]) for name, one in found.items()])
+    best = every[int(np.argmax(weights))]
     rng = np.random.default_rng([seed, 3])
     count = len(best.samples)
-    which = rng.choice(len(names), count, p=weights)
+    which = rng.choice(len(every), count, p=weights)
     rows = rng.integers(count, size=count)
-    draws = list(zip((found[names[k]] for k in which), rows, strict=True))
+    draws = [(every[k], row) for k, row in zip(which, rows, strict=True)]
     predictive = np.stack([one.predictive[row] for one, row in draws])
     lost = [one.predictive_losses[row] for one, row in draws if one.predictive_losses is not None]
     laws = tuple(
-        LawEvidence(
-            name=name,
-            log_evidence=found[name].log_evidence,
-            log_evidence_sd=found[name].log_evidence_sd,
-            weight=float(weight),
-        )
-        for name, weight in zip(names, weights, strict=True)
+        LawEvidence(name=name, log_evidence=one.log_evidence, log_evidence_sd=one.log_evidence_sd, weight=float(weight))
+        for (name, one), weight in zip(found.items(), weights, strict=True)
     )
     notes = best.notes
-    if any(_data(one) != _data(best) for one in found.values()):
+    if any(_data(one) != _data(best) for one in every):
         text = (
             "The laws were not compared on the same measured numbers, since not every law has an answer for each of "
             "them: their evidences do not show which is better."
@@ -394,7 +388,7 @@ def identification_axes(found: Identification, ax: Any = None) -> "list[Axes]":
 
 def _draw(axes: "Sequence[Axes]", found: Identification) -> None:
     upper, *lower = axes
-    _parameters(upper, found)
+    _draw_parameters(upper, found)
     labels = [
         load_text(load) + (", left out" if out else "") for load, out in zip(found.loads, found.left_out, strict=True)
     ]
@@ -418,31 +412,16 @@ def _heights(found: Identification) -> list[float]:
     return heights + [0.6 + 0.24 * found.test.shape[1] * len(found.loads) ** 0.5] * len(_parts(found))
 
 
-def _parameters(ax: Any, found: Identification) -> None:
+def _draw_parameters(ax: Any, found: Identification) -> None:
     """Each parameter after the test, over its prior."""
-    names = found.names
-    prior = np.array([one.quantile(np.array([0.05, 0.5, 0.95])) for one in found.priors])
-    width = prior[:, 2] - prior[:, 0]
-    after = (found.quantiles().T - prior[:, :1]) / width[:, None]
-    y = np.arange(len(names))
+    low, high = np.array([one.quantile(np.array([0.05, 0.95])) for one in found.priors]).T
+    low_after, middle, high_after = (found.quantiles() - low) / (high - low)
+    y = np.arange(len(found.names))
     ax.barh(y, np.ones(len(y)), height=0.55, color="0.88", label="before the test")
-    ax.errorbar(
-        after[:, 1],
-        y,
-        xerr=[after[:, 1] - after[:, 0], after[:, 2] - after[:, 1]],
-        fmt="o",
-        ms=4,
-        color=COLOURS[0],
-        lw=2.2,
-        label="after it",
-    )
-    ax.set_yticks(
-        y,
-        [
-            f"{name_of(name)} ({contraction:.2f})"
-            for name, contraction in zip(names, found.posterior_contraction, strict=True)
-        ],
-    )
+    ends = [middle - low_after, high_after - middle]
+    ax.errorbar(middle, y, xerr=ends, fmt="o", ms=4, color=COLOURS[0], lw=2.2, label="after it")
+    contractions = zip(found.names, found.posterior_contraction, strict=True)
+    ax.set_yticks(y, [f"{name_of(name)} ({contraction:.2f})" for name, contraction in contractions])
     ax.set_xlabel("5 to 95 % of the prior = 0 to 1; in brackets, sd after over sd before")
     ax.invert_yaxis()
     ax.grid(axis="x", alpha=0.3)

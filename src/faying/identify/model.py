@@ -14,17 +14,9 @@ class Model(Protocol):
     names, units, priors: of the d parameters, which are independent; units are SI, "" for plain numbers.
     """
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the parameters."""
-
-    @property
-    def units(self) -> tuple[str, ...]:
-        """SI units of the parameters."""
-
-    @property
-    def priors(self) -> tuple[Distribution, ...]:
-        """Distributions of the parameters."""
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    priors: tuple[Distribution, ...]
 
     def frequencies(self, values: Array, report: Report | None = None, allowed: float = inf) -> tuple[Array, list[str]]:
         """The frequencies of the test's modes, and after them their loss factors where the test has these.

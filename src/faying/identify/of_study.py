@@ -52,13 +52,11 @@ class StudyModel:
         more than is allowed.
         """
         self.calls += 1
-        inputs, what = self.ensemble.inputs, f"{self.calls:03d}"
+        inputs, what, stage = self.ensemble.inputs, f"{self.calls:03d}", "evaluations"
         if inputs.models:
-            self.stage.begin(f"evaluations of {inputs.models[self.law][0]}", report)
+            stage, what = f"evaluations of {inputs.models[self.law][0]}", f"{self.law}-{what}"
             values = np.column_stack([values, np.full(len(values), inputs.share(self.law))])
-            what = f"{self.law}-{what}"
-        else:
-            self.stage.begin("evaluations", report)
+        self.stage.begin(stage, report)
         samples = self.ensemble.with_values(values)
         rows = self.reduced.rows(samples, what, self.law, allowed=allowed)
         if allowed < inf and len(values) > 1:
@@ -124,7 +122,7 @@ def identify(
     study = Study.read_bolted(study, first_loading=True)
     check_seed(seed)
     check(study, MIN_SAMPLES)
-    if isinstance(count, bool) or not isinstance(count, int) or count < 100:
+    if count < 100:
         raise InputError(f"count = {count!r} should be a whole number of 100 or more")
     if study.test is None or not study.test.points:
         raise InputError(

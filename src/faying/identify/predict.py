@@ -1,6 +1,6 @@
 """From a study whose numbers scatter to the quantiles of its frequencies."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, overload
@@ -128,13 +128,13 @@ def predict(
 
 def check_seed(seed: int) -> None:
     """Raise InputError for what is not a seed."""
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+    if seed < 0:
         raise InputError(f"seed = {seed!r} should be a whole number of 0 or more")
 
 
 def check(study: Study, samples: int) -> None:
     """Raise InputError for counts that make no prediction, and for studies that bases cannot hold."""
-    if isinstance(samples, bool) or not isinstance(samples, int) or not MIN_SAMPLES <= samples <= MAX_SAMPLES:
+    if not MIN_SAMPLES <= samples <= MAX_SAMPLES:
         raise InputError(
             f"samples = {samples!r} should be a whole number from {MIN_SAMPLES} to {MAX_SAMPLES:,}, for example 1024"
         )
@@ -149,15 +149,11 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
     reasons = [str(reason) for reason in rows["reasons"]]
     if all(reasons):
         raise InputError(f"none of {len(reasons)} samples has an answer; the first: {reasons[0]}")
-    test = study.test
     tested: dict[str, Any] = {}
-    if test is not None:
-        names = paired_modes(np.array(test.frequencies), rows)
-        tested = {
-            "paired": paired(rows["named"], names),
-            "test": np.array(test.frequencies),
-            "test_source": test.source,
-        }
+    if study.test is not None:
+        test = np.array(study.test.frequencies)
+        tested = {"paired": paired(rows["named"], paired_modes(test, rows)), "test": test}
+        tested["test_source"] = study.test.source
     found = Prediction(
         title=study.title,
         inputs=ensemble.inputs,
@@ -179,30 +175,30 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
     return found.with_notes([*mates, *_notes(study, found), *of_bases(reduced.errors(ensemble, rows))])
 
 
-def _notes(study: Study, found: Prediction) -> list[Note]:
+def _notes(study: Study, found: Prediction) -> Iterator[Note]:
     """What a reader of the intervals ought to know."""
-    out = [*cut_notes(found.inputs.columns), *part_test_notes(study)]
+    yield from (*cut_notes(found.inputs.columns), *part_test_notes(study))
     choice = study.uncertain or UncertainChoice()
     drawn, seed = {one.key for one in choice.inputs}, "form.waviness_seed"
     flat = [one.name for one in study.joints if one.form is None and f"joint.{one.name}.{seed}" not in drawn]
     if flat and not choice.only and f"joint.{seed}" not in drawn:
         text = "no waves are drawn: the faces are curved, have no room for waves, or are seats of a solid bolt"
-        out.append(Note(code="no-waves", text=f"{joint_names(flat)}: {text}"))
+        yield Note(code="no-waves", text=f"{joint_names(flat)}: {text}")
     for reason, count in found.reasons.items():
-        out.append(Note(code="no-answer", text=f"{count} of {len(found.values)} samples have no answer: {reason}"))
+        yield Note(code="no-answer", text=f"{count} of {len(found.values)} samples have no answer: {reason}")
     if found.convergence > MOVED:
         text = (
             f"half of the samples give ends of the intervals that differ by up to {found.convergence:.0%} of their "
             "width; take more samples"
         )
-        out.append(Note(code="few-samples", text=text))
+        yield Note(code="few-samples", text=text)
     far = int(np.count_nonzero(np.nanmax(found.above_range_share[found.sound], axis=1) > ABOVE_RANGE))
     if far:
         text = (
             f"{far} of {found.answered} samples press more than a tenth of the contact above the end of the law, "
             "where its stiffness stays constant; faying run bounds what that does to a frequency"
         )
-        out.append(Note(code="beyond", text=text))
+        yield Note(code="beyond", text=text)
     if found.paired is not None:
         lost = np.isnan(found.paired[found.sound]).any(axis=1)
         for mode in np.flatnonzero(lost.any(axis=0)):
@@ -210,14 +206,13 @@ def _notes(study: Study, found: Prediction) -> list[Note]:
                 f"test mode {mode + 1} has no partner in {int(lost[:, mode].sum())} of {found.answered} samples; its "
                 "interval is that of the others"
             )
-            out.append(Note(code="test-modes", text=text))
+            yield Note(code="test-modes", text=text)
     if not choice.models:
         text = (
             f"the intervals include what is listed above, and {found.discrepancy:.2%} of each frequency for what else "
             "the parts are (uncertain.structure, discrepancy); not the error of the mesh"
         )
-        out.append(Note(code="interval", text=text))
-    return out
+        yield Note(code="interval", text=text)
 
 
 def of_bases(errors: Array) -> list[Note]:
@@ -226,11 +221,8 @@ def of_bases(errors: Array) -> list[Note]:
     if not np.any(np.concatenate(known) > TOLERANCE):
         return []
     places = ("the worst by their own estimate", "some others from all over")
-    parts = [
-        f"{row.max():.1e} at {place} ({len(row)} looked at)"
-        for row, place in zip(known, places, strict=True)
-        if len(row)
-    ]
+    pairs = zip(known, places, strict=True)
+    parts = [f"{row.max():.1e} at {place} ({len(row)} looked at)" for row, place in pairs if len(row)]
     return [Note(code="bases", text=f"the small bases miss a frequency of a sample by up to {', '.join(parts)}")]
 
 
@@ -245,11 +237,6 @@ def part_test_notes(study: Study) -> list[Note]:
 
 def cut_notes(columns: Sequence[Any]) -> list[Note]:
     """Say what was cut of a distribution that reaches values which the number cannot have."""
-    return [
-        Note(
-            code="uncertain-cut",
-            text=f"{column.key}: {column.cut:.2g} of its probability is outside the possible values and is left out",
-        )
-        for column in columns
-        if column.cut > 1e-6
-    ]
+    text = "of its probability is outside the possible values and is left out"
+    cut = [column for column in columns if column.cut > 1e-6]
+    return [Note(code="uncertain-cut", text=f"{one.key}: {one.cut:.2g} {text}") for one in cut]

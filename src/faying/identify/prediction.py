@@ -1,7 +1,7 @@
 """What scatter makes of the frequencies of a study: its samples, what follows from them, on disk, and drawn."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from statistics import NormalDist
 from textwrap import wrap
@@ -26,6 +26,7 @@ from faying.style import (
     COLUMN,
     WIDE,
     axes_of,
+    colour,
     drawing,
     headline,
     load_colours,
@@ -181,15 +182,13 @@ class Prediction(Recorded):
     def _quantiles(self, levels: tuple[float, ...], which: Any) -> Quantiles:
         if not np.any(which):
             raise InputError(f"no sample has an answer: {'; '.join(self.reasons)}")
-        paired = None
-        if self.paired is not None:
-            paired = _levels(self._with_discrepancy(self.paired[which]), levels)
+        paired = None if self.paired is None else self._with_discrepancy(self.paired[which])
         return Quantiles(
             levels=levels,
             frequencies=_levels(self._with_discrepancy(self.frequencies[which]), levels),
             loss_factors=_levels(self.loss_factors[which], levels),
             slopes=_levels(self.slopes[which], levels),
-            paired=paired,
+            paired=None if paired is None else _levels(paired, levels),
         )
 
     @cached_property
@@ -203,10 +202,8 @@ class Prediction(Recorded):
 
         The greatest over modes and loads [-]; NaN with fewer than 16 samples.
         """
-        if self.answered < 16:
-            return float("nan")
         half = self.sound & (np.arange(len(self.values)) < len(self.values) // 2)
-        if not np.any(half):
+        if self.answered < 16 or not np.any(half):
             return float("nan")
         whole, part = (self._quantiles((0.05, 0.95), which).frequencies for which in (self.sound, half))
         width = np.maximum(whole[1] - whole[0], 1e-9 * whole[1])
@@ -270,6 +267,12 @@ class Prediction(Recorded):
                 f"at most {answers.max(initial=0)} samples have an answer; shares of {numeric} inputs need {needed}"
             )
 
+        def at_modes(values: Array) -> Array:
+            """Values of all modes, NaN of those with too few answers."""
+            out = np.full((seen.shape[1], *values.shape[1:]), np.nan)
+            out[modes] = values
+            return out
+
         def scored(values: Array) -> Array:
             """Standard normal scores (n, k) of the columns (k, n) that are numbers."""
             numbers = zip(columns[:numeric], values, strict=False)
@@ -293,13 +296,11 @@ class Prediction(Recorded):
         variance = np.nanvar(seen[self.sound][:, modes], axis=0)
         missed = squared / self.answered / np.where(variance > 0, variance, np.inf)
         beyond = (self.discrepancy * np.nanmean(seen[self.sound][:, modes], axis=0)) ** 2
-        error = np.full(seen.shape[1], np.nan)
-        error[modes] = np.sqrt(missed)
         found = shares(function, [inputs.priors[k] for k in columns], count=POINTS)
         sampled = variance / np.where(variance + beyond > 0, variance + beyond, 1.0)
         unexplained = np.minimum(missed, 1.0) * sampled
         found = found.beside(sampled - unexplained, np.stack([unexplained, 1 - sampled], axis=-1))
-        return _at_modes(found, modes, seen.shape[1]), error
+        return Shares(first=at_modes(found.first), total=at_modes(found.total)), at_modes(np.sqrt(missed))
 
     def _laws(self, values: Array) -> Any:
         """Place of the law of each sample (n,); 0 where the law is certain."""
@@ -339,21 +340,16 @@ class Prediction(Recorded):
         if self.backbones is not None:
             out["backbones"] = self.backbones.to_dict(LEVELS)
         try:
-            found_shares, error = self.shares()
+            shares, error = self.shares()
         except InputError as fault:
             return out | {"shares": {"none": str(fault)}}
-        out["shares"] = {
-            "inputs": list(self.blamed),
-            "first": numbers(found_shares.first),
-            "total": numbers(found_shares.total),
-            "surrogate_error": numbers(error),
-        }
-        return out
+        parts = {"first": numbers(shares.first), "total": numbers(shares.total)}
+        return out | {"shares": {"inputs": list(self.blamed), **parts, "surrogate_error": numbers(error)}}
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
-        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": np.arange(1, self.frequencies.shape[2] + 1)}
-        out["input"] = self.names
+        modes = np.arange(1, self.frequencies.shape[2] + 1)
+        out: dict[str, Any] = {"load": load_texts(self.loads), "mode": modes, "input": self.names}
         return out | ({} if self.test is None else {"test_mode": np.arange(1, self.test.shape[1] + 1)})
 
     def with_backbones(self, backbones: Backbones) -> Self:
@@ -378,17 +374,6 @@ class Prediction(Recorded):
             InputError: It is not axes, or no sample has an answer.
         """
         return interval_axes(self, ax)
-
-
-def _at_modes(found: Shares, modes: Any, count: int) -> Shares:
-    """Shares of some modes among all, NaN for the others."""
-
-    def spread(values: Array) -> Array:
-        out = np.full((*values.shape[:-2], count, values.shape[-1]), np.nan)
-        out[..., modes, :] = values
-        return out
-
-    return Shares(**{f.name: spread(getattr(found, f.name)) for f in fields(Shares)})
 
 
 def _levels(values: Array, levels: tuple[float, ...]) -> Array:
@@ -466,26 +451,11 @@ def tornado(found: Prediction) -> Any:
     left = np.zeros(modes)
     for rank, k in enumerate(order):
         width = np.clip(np.nan_to_num(shares.first[:, k]), 0, None)
-        ax.barh(
-            range(modes),
-            100 * width,
-            left=100 * left,
-            height=0.7,
-            color=COLOURS[rank % len(COLOURS)],
-            hatch="//" if rank >= len(COLOURS) else None,
-            label=name_of(found.blamed[k]),
-        )
+        look = {"color": colour(rank), "hatch": "//" if rank >= len(COLOURS) else None}
+        ax.barh(range(modes), 100 * width, left=100 * left, height=0.7, label=name_of(found.blamed[k]), **look)
         left += width
-    rest = np.clip(1 - left, 0, None)
-    ax.barh(
-        range(modes),
-        100 * rest,
-        left=100 * left,
-        height=0.7,
-        color="white",
-        edgecolor="0.6",
-        label="together, not one alone",
-    )
+    rest, look = np.clip(1 - left, 0, None), {"color": "white", "edgecolor": "0.6"}
+    ax.barh(range(modes), 100 * rest, left=100 * left, height=0.7, label="together, not one alone", **look)
     ax.invert_yaxis()
     ax.set_yticks(range(modes), [str(k + 1) for k in range(modes)])
     ax.set(xlim=(0, 100), ylabel="mode" if found.paired is None else "test mode")
@@ -512,10 +482,8 @@ def scatter_matrix(found: Prediction) -> Any:
             ax.plot(found.values[:, k] / factor, frequencies[:, mode], ".", ms=2, color=COLOURS[0], alpha=0.5)
             ax.locator_params(nbins=3)
             if row == len(modes) - 1:
-                ax.set_xlabel(
-                    "\n".join(wrap(name_of(found.names[k]), 18, break_long_words=False))
-                    + (f"\n[{unit}]" if unit else "")
-                )
+                words = wrap(name_of(found.names[k]), 18, break_long_words=False)
+                ax.set_xlabel("\n".join([*words, f"[{unit}]"] if unit else words))
         axes[row, 0].set_ylabel(f"mode {mode + 1} [Hz]")
     return fig
 

@@ -37,7 +37,7 @@ ENOUGH = 20  # assemblies: of fewer none need lie outside 5 to 95 %
 
 def check_assemblies(study: Study, count: int) -> None:
     """Raise InputError for a count that says nothing of scatter, and for a study whose bolts press nothing."""
-    if isinstance(count, bool) or not isinstance(count, int) or not MIN_ASSEMBLIES <= count <= MAX_ASSEMBLIES:
+    if not MIN_ASSEMBLIES <= count <= MAX_ASSEMBLIES:
         raise InputError(
             f"assemblies = {count!r} should be a whole number from {MIN_ASSEMBLIES} to {MAX_ASSEMBLIES:,}, for example "
             "32"

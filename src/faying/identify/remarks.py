@@ -41,13 +41,12 @@ def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array, modes: int)
 
 def of_answers(reasons: Sequence[str], where: str, code: str) -> list[Note]:
     """Samples without an answer, counted by reason."""
-    failed = Counter(reason for reason in reasons if reason)
-    count = sum(failed.values())
-    if not count:
+    failed = Counter(filter(None, reasons))
+    if not failed:
         return []
     listed = [f"{reason} ({times})" for reason, times in failed.most_common(SHOWN)]
     rest = f", and {len(failed) - SHOWN} other reasons" if len(failed) > SHOWN else ""
-    text = f"{count} of {len(reasons)} points {where} have no answer: {', '.join(listed)}{rest}."
+    text = f"{failed.total()} of {len(reasons)} points {where} have no answer: {', '.join(listed)}{rest}."
     return [Note(code=code, text=text)]
 
 

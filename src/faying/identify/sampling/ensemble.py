@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import product
 from typing import Self
 
 import numpy as np
@@ -199,12 +198,9 @@ class Ensemble:
         from scipy.stats import norm
 
         size, laws = len(inputs.columns), max(len(inputs.models), 1)
-        rows = [np.zeros(size)] * laws
-        for column, sign in product(range(size), (-TRAINING_SCORE, TRAINING_SCORE)):
-            rows.append(np.zeros(size))
-            rows[-1][column] = sign
-        rows += list(np.random.default_rng(seed).choice([-TRAINING_SCORE / 2, TRAINING_SCORE / 2], (PAIRS, size)))
-        shares = norm.cdf(np.array(rows))
+        either = np.stack([-np.eye(size), np.eye(size)], axis=1).reshape(-1, size)  # each input to both sides, in turn
+        far = np.random.default_rng(seed).choice([-TRAINING_SCORE / 2, TRAINING_SCORE / 2], (PAIRS, size))
+        shares = norm.cdf(np.concatenate([np.zeros((laws, size)), TRAINING_SCORE * either, far]))
         if inputs.models:  # laws in turn
             middles = np.array([inputs.share(law) for law in range(laws)])
             shares[:, -1] = middles[np.arange(len(shares)) % laws]

@@ -30,8 +30,7 @@ def choice_of(study: Study, samples: int, backbones: int) -> BackboneChoice:
 
     Raises InputError where the count does not fit, there is no [backbone], or it asks for several curves.
     """
-    whole = isinstance(backbones, int) and not isinstance(backbones, bool)
-    if not whole or not MIN_BACKBONES <= backbones <= samples:
+    if not MIN_BACKBONES <= backbones <= samples:
         raise InputError(
             f"backbones = {backbones!r} should be a whole number from {MIN_BACKBONES} to that of the samples, "
             f"{samples:,}"

@@ -114,13 +114,8 @@ class Surrogate:
 
 def _term_sets(inputs: int, degree: int, most: int) -> list[Index]:
     """Sets of terms to choose from, each with its degrees (p, d), the constant alone first; at most `most` terms."""
-    sets: dict[bytes, Index] = {}
-    for highest in range(degree + 1):
-        for flatness in FLATNESS:
-            terms = _terms(inputs, highest, flatness, most)
-            if terms is not None:
-                sets.setdefault(terms.tobytes(), terms)
-    return list(sets.values())
+    every = (_terms(inputs, highest, flatness, most) for highest in range(degree + 1) for flatness in FLATNESS)
+    return list({terms.tobytes(): terms for terms in every if terms is not None}.values())
 
 
 def _terms(inputs: int, degree: int, flatness: float, most: int) -> Index | None:
@@ -180,12 +175,11 @@ def _least_squares(columns: Array, y: Array) -> tuple[Array, Array]:
     """Coefficients (p, m) and the leave-one-out error (m,), infinite where the columns depend on each other."""
     q, r = np.linalg.qr(columns)
     pivots = np.abs(np.diag(r))
-    if pivots.min() <= DEPENDENT * pivots.max():
+    left = 1 - np.einsum("ij,ij->i", q, q)  # 1 - h_ii of the hat matrix
+    # a point that alone fixes a coefficient: nothing is known of its error
+    if pivots.min() <= DEPENDENT * pivots.max() or left.min() <= DEPENDENT:
         return np.zeros((columns.shape[1], y.shape[1])), np.full(y.shape[1], np.inf)
     projected = q.T @ y
-    left = 1 - np.einsum("ij,ij->i", q, q)  # 1 - h_ii of the hat matrix
-    if left.min() <= DEPENDENT:  # a point that alone fixes a coefficient: nothing is known of its error
-        return np.zeros((columns.shape[1], y.shape[1])), np.full(y.shape[1], np.inf)
     error = (y - q @ projected) / left[:, None]
     # terms are chosen by this error, so that it must not favour many of them
     count, size = columns.shape
