@@ -83,8 +83,7 @@ def result(test, predicted, low=None, high=None, modes=None):
         loads=np.arange(1, len(test) + 1) * 1e3,
         bonded=np.full(test.shape[1], 200.0),
         free=np.full(test.shape[1], 50.0),
-        interval_low=low,
-        interval_high=high,
+        interval_ends=None if low is None else np.stack([low, high]),
     )
 
 

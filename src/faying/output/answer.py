@@ -10,6 +10,7 @@ from faying.result.interval import Interval
 from faying.result.run_record import DampedLevels, preload_slope
 from faying.result.score import Score
 from faying.result.shape_names import part_and_axis
+from faying.text import or_dash
 from faying.typing import Array
 from faying.units import load_text
 
@@ -150,14 +151,13 @@ def narrowing(result: Result) -> Rows:
     interval = result.interval
     if interval is None:
         return []
-    found: list[tuple[float, list[str]]] = []
-    for name, less in gains(interval).items():
+    rows: Rows = [["not known", "what would narrow it", "median [%]", "most [%]"]]
+    for name, less in sorted(gains(interval).items(), key=lambda one: -float(np.mean(one[1]))):
         best = int(np.argmax(less))
         if less[best] >= MIN_GAIN:
             cells = [f"{100 * float(np.median(less)):.0f}", f"{100 * less[best]:.0f} (mode {best + 1})"]
-            found.append((float(np.mean(less)), [name, SCATTER[name].remedy, *cells]))
-    found.sort(key=lambda one: -one[0])
-    return [["not known", "what would narrow it", "median [%]", "most [%]"], *(cells for _, cells in found)]
+            rows.append([name, SCATTER[name].remedy, *cells])
+    return rows
 
 
 def score(result: Result) -> Rows:
@@ -165,10 +165,8 @@ def score(result: Result) -> Rows:
     found = Score.of(result)
     if found is None:
         return []
-    rows: Rows = [["rms error [%]", *(load_text(load) for load in found.loads)]]
-    for name in found.guesses:
-        rows.append([name, *("-" if np.isnan(e) else f"{100 * e:.2f}" for e in found.errors(name))])
-    return rows
+    rows = ([name, *(or_dash(100 * e, ".2f") for e in found.errors(name))] for name in found.guesses)
+    return [["rms error [%]", *map(load_text, found.loads)], *rows]
 
 
 def score_line(result: Result) -> str:

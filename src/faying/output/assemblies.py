@@ -31,9 +31,8 @@ def scatter(found: Assemblies, load: int) -> Rows:
 def alone(found: Assemblies, load: int) -> Rows:
     """One row per mode at one preload: the standard deviation with one thing drawn alone, and with all."""
     rows = 100 * np.vstack([found.deviation_alone[:, load], found.deviation[load]])
-    return by_mode(
-        [*(f"{name} alone [%]" for name in found.sources), "all [%]"], ([f"{x:.2g}" for x in one] for one in rows.T)
-    )
+    heads = [*(f"{name} alone [%]" for name in found.sources), "all [%]"]
+    return by_mode(heads, ([f"{x:.2g}" for x in one] for one in rows.T))
 
 
 def text(found: Assemblies) -> str:
@@ -46,8 +45,7 @@ def text(found: Assemblies) -> str:
             WIDTH,
         )
     ]
-    for k, load in enumerate(found.loads):
-        parts.append(f"\nat {load_text(load)}\n" + aligned(scatter(found, k)))
+    parts += [f"\nat {load_text(load)}\n{aligned(scatter(found, k))}" for k, load in enumerate(found.loads)]
     if len(found.sources) > 1:
         head = f"standard deviation at {load_text(found.loads[-1])}, each thing drawn alone"
         parts.append(f"\n{head}\n" + aligned(alone(found, -1)))

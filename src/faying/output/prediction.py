@@ -8,22 +8,19 @@ from faying.errors import InputError
 from faying.identify.prediction import LEVELS, Prediction
 from faying.output.table import Rows, by_mode
 from faying.output.table import text as aligned
+from faying.output.terminal import WIDTH
 from faying.units import in_mm, load_text
 
-WIDTH = 80  # columns of a terminal
 SHOWN = 0.03  # share of the variance from which an input is named
 MAX_ACCELERATIONS = 12  # accelerations in the table of backbones, but for the last
 
 
 def scatter(found: Prediction) -> Rows:
     """One row per input: what scatters, and how."""
-    rows: Rows = [["source", "distribution"]]
-    for column in found.inputs.columns:
-        if column.key != "law.model":
-            rows.append([column.key, column.distribution.text(column.unit)])
-    if found.inputs.models:
-        rows.append(["law.model", ", ".join(f"{name} {weight:.0%}" for name, weight in found.inputs.models)])
-    return rows
+    columns = [column for column in found.inputs.columns if column.key != "law.model"]
+    rows = [["source", "distribution"], *([one.key, one.distribution.text(one.unit)] for one in columns)]
+    laws = ", ".join(f"{name} {weight:.0%}" for name, weight in found.inputs.models)
+    return [*rows, ["law.model", laws]] if laws else rows
 
 
 def intervals(found: Prediction) -> Rows:

@@ -93,8 +93,7 @@ def _answer(result: Result, pictures: dict[str, str]) -> list[str]:
 
 
 def _made_by(result: Result) -> str:
-    date = result.provenance.date
-    version = result.provenance.versions.get("faying", __version__)
+    date, version = result.provenance.date, result.provenance.versions.get("faying", __version__)
     when = f", {date.replace('T', ' ').replace('+00:00', ' UTC')}" if date else ""
     return f"{result.unknowns:,} unknowns, factorised by {result.solver}; Faying {version}{when}."
 
@@ -451,13 +450,13 @@ def backbone_curves(curves: Sequence[Backbone]) -> dict[str, Any]:
     found = {}
     for curve in curves:
         inside = (grid >= low) & (grid <= curve.acceleration[-1] * (1 + 1e-9))
-        frequency, damping = (np.full(len(grid), np.nan) for _ in range(2))
+        frequency, damping = np.full((2, len(grid)), np.nan)
         frequency[inside], damping[inside] = curve.at_acceleration(grid[inside])
         damping[damping < ROUNDING * curve.damping.max()] = np.nan  # nothing slips yet
         found[label(curve, curves)] = (frequency, 100 * damping)
     if measured is not None:
         place = np.searchsorted(grid, measured.acceleration)
-        frequency, damping = (np.full(len(grid), np.nan) for _ in range(2))
+        frequency, damping = np.full((2, len(grid)), np.nan)
         frequency[place], damping[place] = measured.frequency, 100 * measured.damping
         marked = f"measured ({measured.source})"
         found[marked] = (frequency, damping)

@@ -30,21 +30,22 @@ def by_mode(heads: Iterable[str], cells: Iterable[Iterable[str]]) -> Rows:
     return [["mode", *heads], *([str(number), *row] for number, row in enumerate(cells, start=1))]
 
 
+def by_load(result: Result, heads: Iterable[str], cells: Iterable[Iterable[str]]) -> Rows:
+    """One row per preload."""
+    return [["preload", *heads], *([load, *row] for load, row in zip(result.load_names, cells, strict=True))]
+
+
 def modes(result: Result) -> Rows:
     """One row per mode: free, then each preload with its loss factor where one is predicted, then bonded."""
     lost = bool(np.isfinite(result.loss_factors).any())
     heads = [f"{load} [Hz]{' (loss)' * lost}" for load in result.load_names]
-    bounded = result.free is not None and result.bonded is not None
-    rows: Rows = [["mode", *["free [Hz]"] * bounded, *heads, *["bonded [Hz]"] * bounded]]
-    for j in range(result.frequencies.shape[1]):
-        cells = [
-            f"{f:.2f} ({eta:.1e})" if lost else f"{f:.2f}"
-            for f, eta in zip(result.frequencies[:, j], result.loss_factors[:, j], strict=True)
-        ]
-        if result.free is not None and result.bonded is not None:
-            cells = [f"{result.free[j]:.2f}", *cells, f"{result.bonded[j]:.2f}"]
-        rows.append([str(j + 1), *cells])
-    return rows
+    pairs = zip(result.frequencies.T, result.loss_factors.T, strict=True)
+    cells = [[f"{f:.2f} ({eta:.1e})" if lost else f"{f:.2f}" for f, eta in zip(*pair, strict=True)] for pair in pairs]
+    if result.free is not None and result.bonded is not None:
+        heads = ["free [Hz]", *heads, "bonded [Hz]"]
+        bounds = zip(result.free, result.bonded, strict=True)
+        cells = [[f"{a:.2f}", *row, f"{b:.2f}"] for row, (a, b) in zip(cells, bounds, strict=True)]
+    return by_mode(heads, cells)
 
 
 def ranges(result: Result) -> Rows:
@@ -87,15 +88,17 @@ def above_range(result: Result) -> Rows:
     """One row per mode: constant stiffness above the end of the law, and bonded there; empty where none is above."""
     if result.above_range_frequencies is None or result.above_range_loss_factors is None:
         return []
-    rows: Rows = [["mode", *(f"{load} constant .. bonded [Hz] (loss)" for load in result.load_names)]]
-    for j in range(result.frequencies.shape[1]):
-        cells = []
-        for i in range(len(result.loads)):
-            low, high = result.frequencies[i, j], result.above_range_frequencies[i, j]
-            losses = f" ({result.loss_factors[i, j]:.1e} .. {result.above_range_loss_factors[i, j]:.1e})"
-            cells.append(f"{low:.2f} .. {high:.2f}, {high / low - 1:+.2%}{'' if 'nan' in losses else losses}")
-        rows.append([str(j + 1), *cells])
-    return rows
+    ends = (result.frequencies, result.above_range_frequencies)
+    losses = (result.loss_factors, result.above_range_loss_factors)
+
+    def cell(low: float, high: float, least: float, most: float) -> str:
+        loss = "" if np.isnan(least + most) else f" ({least:.1e} .. {most:.1e})"
+        return f"{low:.2f} .. {high:.2f}, {high / low - 1:+.2%}{loss}"
+
+    heads = (f"{load} constant .. bonded [Hz] (loss)" for load in result.load_names)
+    return by_mode(
+        heads, ([cell(*four) for four in mode] for mode in np.stack([*ends, *losses], axis=-1).swapaxes(0, 1))
+    )
 
 
 def laws(result: Result) -> Rows:
@@ -162,11 +165,8 @@ def waves_head(result: Result) -> str:
     drawn = np.isfinite(result.wave_rms)
     if not drawn.any():
         return ""
-    rms, low, high = (
-        _one_or_ends(1e6 * result.wave_rms[drawn], "um"),
-        _one_or_ends(1e3 * result.wave_lengths[drawn, 0], "mm"),
-        _one_or_ends(1e3 * result.wave_lengths[drawn, 1], "mm"),
-    )
+    rms = _one_or_ends(1e6 * result.wave_rms[drawn], "um")
+    low, high = (_one_or_ends(1e3 * ends, "mm") for ends in result.wave_lengths[drawn].T)
     return f"waves from {low} to {high}, rms {rms} on each face, {len(result.wave_seeds)} draws"
 
 
@@ -240,22 +240,17 @@ def bolts(result: Result) -> Rows:
     """One row per preload: force in each bolt when all are tight; empty without bolts, or where `bolting` has it."""
     if not result.bolts or (not result.tightening and result.bolt_numbers is not None):
         return []
-    rows: Rows = [["preload", *(f"{name} [kN]" for name in result.bolts)]]
-    for load, forces in zip(result.load_names, result.bolt_forces, strict=True):
-        rows.append([load, *(f"{force / 1e3:.3f}" for force in forces)])
-    return rows
+    cells = ([f"{force / 1e3:.3f}" for force in forces] for forces in result.bolt_forces)
+    return by_load(result, (f"{name} [kN]" for name in result.bolts), cells)
 
 
 def of_quantity(result: Result, name: str) -> Rows:
     """A quantity of modes: one row per mode. Of bolts, joints and the like: one row per preload, a column for each."""
     meta, values = result.shown()[name], np.asarray(getattr(result, name))
-    loads = list(result.load_names)
-    if meta.dims == ("load", "mode"):
-        cells = ([or_dash(v, meta.shown.form) for v in row] for row in values.T)
-        return by_mode((f"{load} [{meta.unit_text}]" for load in loads), cells)
-    rows: Rows = [["preload", *(f"{label} [{meta.unit_text}]" for label in result.labels()[meta.dims[1]])]]
-    rows += [[load, *(or_dash(v, meta.shown.form) for v in row)] for load, row in zip(loads, values, strict=True)]
-    return rows
+    of_modes = meta.dims == ("load", "mode")
+    heads = [f"{one} [{meta.unit_text}]" for one in (result.load_names if of_modes else result.labels()[meta.dims[1]])]
+    cells = [[or_dash(v, meta.shown.form) for v in row] for row in (values.T if of_modes else values)]
+    return by_mode(heads, cells) if of_modes else by_load(result, heads, cells)
 
 
 def bolting(result: Result) -> Rows:
@@ -308,26 +303,21 @@ def modal_forces(result: Result) -> Rows:
     b = result.bolt_numbers
     if b is None or not np.isfinite(b.modal_force).any():
         return []
-    rows: Rows = [["mode", *(f"{name} [{unit}]" for name in result.bolts for unit in ("N/um", "N/(m/s2)"))]]
-    for j in range(result.frequencies.shape[1]):
-        cells = zip(b.modal_force[-1, j], b.modal_force_by_acceleration[-1, j], strict=True)
-        rows.append([str(j + 1), *(text for f, a in cells for text in (or_dash(1e-6 * f, ".3g"), or_dash(a, ".3g")))])
-    return rows
+    heads = (f"{name} [{unit}]" for name in result.bolts for unit in ("N/um", "N/(m/s2)"))
+    both = np.stack([1e-6 * b.modal_force[-1], b.modal_force_by_acceleration[-1]], axis=-1)
+    return by_mode(heads, ([or_dash(one, ".3g") for one in mode.ravel()] for mode in both))
 
 
 def conductance(result: Result) -> Rows:
     """One row per preload: conductance of heat and current of each joint; empty where no material states its own."""
-    fields = [
-        (values, unit)
-        for values, unit in ((result.thermal_conductance, "W/K"), (result.electrical_conductance, "S"))
-        if values is not None
-    ]
-    if not fields:
+    every = {"W/K": result.thermal_conductance, "S": result.electrical_conductance}
+    known = {unit: values for unit, values in every.items() if values is not None}
+    if not known:
         return []
-    rows: Rows = [["preload", *(f"{name} [{unit}]" for _, unit in fields for name in result.joints)]]
-    for i, load in enumerate(result.load_names):
-        rows.append([load, *(or_dash(v, ".4g") for values, _ in fields for v in values[i])])
-    return rows
+    heads = (f"{name} [{unit}]" for unit in known for name in result.joints)
+    return by_load(
+        result, heads, ([or_dash(v, ".4g") for v in row] for row in np.concatenate([*known.values()], axis=1))
+    )
 
 
 EMBEDDING = (
@@ -353,14 +343,13 @@ def fractal(facts: Mapping[str, Any]) -> list[str]:
         found = facts.get(name, facts.get(f"{name} [m]"))
         return list(found) if isinstance(found, list | tuple) else [found]
 
-    def plain(value: float | None) -> str:
-        return "-" if value is None or not np.isfinite(value) else f"{value:.3f}"
+    def cell(name: str, value: float | None) -> str:
+        if value is None or not np.isfinite(value):
+            return "-"
+        return f"{value:.3f}" if name in ("D", "D_interval") else show(value, "m", digits=3)
 
-    def length(value: float | None) -> str:
-        return "-" if value is None or not np.isfinite(value) else show(value, "m", digits=3)
-
-    names = {"D": plain, "D_interval": plain, "G": length, "G_interval": length, "band": length, "implied_Rq": length}
-    return [" .. ".join(map(form, values(name))) for name, form in names.items()]
+    names = ("D", "D_interval", "G", "G_interval", "band", "implied_Rq")
+    return [" .. ".join(cell(name, value) for value in values(name)) for name in names]
 
 
 def fractals(result: Result) -> Rows:
@@ -417,8 +406,7 @@ def measured_backbone(points: MeasuredBackbone) -> Rows:
     rows: Rows = [["t [s]", "a [m/s2]", "f [Hz]", "+-", "damping [%]", "+-"]]
     names = ("time", "acceleration", "frequency", "frequency_error", "damping", "damping_error")
     for t, a, f, f_error, z, z_error in zip(*(getattr(points, name) for name in names), strict=True):
-        row = [f"{t:.4g}", f"{a:.4g}", f"{f:.3f}", f"{f_error:.1g}", f"{100 * z:.4g}", f"{100 * z_error:.1g}"]
-        rows.append(row)
+        rows.append([f"{t:.4g}", f"{a:.4g}", f"{f:.3f}", f"{f_error:.1g}", f"{100 * z:.4g}", f"{100 * z_error:.1g}"])
     return rows
 
 

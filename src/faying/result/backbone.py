@@ -159,9 +159,8 @@ class Backbone(Recorded):
         rows = {"at rest": rest}
         count = len(self.acceleration)
         for k in np.unique(np.linspace(0, count - 1, min(count, MAX_POINTS)).round().astype(int)):
-            rows[f"{self.acceleration[k]:.4g} m/s2"] = (
-                f"{self.frequency[k]:.3f} Hz, damping ratio {self.damping[k]:.3g}, slips on {self.slipping[k]:.0%}"
-            )
+            text = f"{self.frequency[k]:.3f} Hz, damping ratio {self.damping[k]:.3g}, slips on {self.slipping[k]:.0%}"
+            rows[f"{self.acceleration[k]:.4g} m/s2"] = text
         rows["ends"] = self.reason
         return head, rows | notes_row(self.notes)
 
@@ -183,9 +182,8 @@ class Backbone(Recorded):
     def at_measured(self) -> tuple[Array, Array]:
         """Frequency [Hz] and damping ratio [-] of the curve at the measured accelerations, NaN beyond its end."""
         inside = self.measured_acceleration <= self.acceleration[-1]
-        frequency, damping = (np.full(len(inside), np.nan) for _ in range(2))
-        frequency[inside], damping[inside] = self.at_acceleration(self.measured_acceleration[inside])
-        return frequency, damping
+        frequency, damping = self._between(self.acceleration, self.measured_acceleration)
+        return np.where(inside, frequency, np.nan), np.where(inside, damping, np.nan)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -291,10 +289,8 @@ class Backbone(Recorded):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps are left out."""
-        out: dict[str, Any] = {
-            name: getattr(self, name)
-            for name in ("title", "mode", "harmonics", "basis_size", "unknowns", "code", "reason")
-        }
+        plain = ("title", "mode", "harmonics", "basis_size", "unknowns", "code", "reason")
+        out: dict[str, Any] = {name: getattr(self, name) for name in plain}
         for name in ("friction", "joints", "bolts", "laws"):
             out[name] = list(getattr(self, name))
         units = {"preload": "N", "linear_frequency": "Hz", "rest_damping": "1", "shape_at": "kg^-1/2"}
@@ -360,27 +356,11 @@ def panel(ax: Any, curves: Sequence[Backbone], quantity: str, measured: Sequence
     measured = [*([] if own is None else [own]), *measured]
     factor = factor_of(quantity)
     for k, curve in enumerate(curves):
-        color = colour(k)
-        ax.plot(
-            curve.acceleration,
-            factor * getattr(curve, quantity),
-            color=color,
-            lw=1.5,
-            marker=".",
-            ms=3.5,
-            label=label(curve, curves),
-        )
-        if curve.witness is not None:
-            ax.plot(
-                curve.witness.acceleration,
-                factor * getattr(curve.witness, quantity),
-                "o",
-                mfc="none",
-                mec=color,
-                ms=6,
-                mew=1.0,
-                label="static cycle" if k == 0 else None,
-            )
+        look: dict[str, Any] = {"color": colour(k), "lw": 1.5, "marker": ".", "ms": 3.5}
+        ax.plot(curve.acceleration, factor * getattr(curve, quantity), label=label(curve, curves), **look)
+        if (cycle := curve.witness) is not None:
+            look = {"mfc": "none", "mec": colour(k), "ms": 6, "mew": 1.0, "label": "static cycle" if k == 0 else None}
+            ax.plot(cycle.acceleration, factor * getattr(cycle, quantity), "o", **look)
     for k, points in enumerate(measured):
         marks(ax, points, quantity, k)
     return framed(ax, quantity)

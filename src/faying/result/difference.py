@@ -11,7 +11,7 @@ from faying.misuse import checked_call
 from faying.numerics.follow import partners
 from faying.result.result import Result
 from faying.style import SOFT, WIDE, Summary, colour, drawing, new_figure, plain_numbers, shared_legend
-from faying.text import csv_text, few, or_dash
+from faying.text import csv_text, few, in_columns
 from faying.typing import Array, Index
 from faying.units import load_text
 
@@ -103,11 +103,11 @@ class RunDifference(Summary):
 
     def of_joint(self, name: str) -> "tuple[JointNumbers, JointNumbers]":
         """Numbers of a joint in both."""
-        first, second = (
-            of_joint(one, load, one.joints.index(name))
-            for one, load in zip((self.first, self.second), self.loads, strict=True)
+        first, second = self.loads
+        return (
+            of_joint(self.first, first, self.first.joints.index(name)),
+            of_joint(self.second, second, self.second.joints.index(name)),
         )
-        return first, second
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -115,28 +115,23 @@ class RunDifference(Summary):
         return tuple(name for name in self.first.joints if name in self.second.joints)
 
     def _of_modes(self, name: str) -> tuple[Array, Array]:
-        first, second = (
-            np.asarray(getattr(one, name)[load][self.modes[:, side]])
-            for side, (one, load) in enumerate(zip((self.first, self.second), self.loads, strict=True))
-        )
-        return first, second
+        (first, second), (own, other) = self.loads, self.modes.T
+        return getattr(self.first, name)[first][own], getattr(self.second, name)[second][other]
 
     def mode_rows(self) -> Rows:
         """One row for each pair of modes, with a head."""
-        rows = [["mode", "first [Hz]", "second [Hz]", "by [%]", "first loss", "second loss", "by [%]", "MAC"]]
-        f, loss = self.frequencies, self.loss_factors
-        for k, (i, j) in enumerate(self.modes):
-            rows.append(
-                [
-                    f"{i + 1}" if i == j else f"{i + 1}, {j + 1}",
-                    *(f"{one[k]:.2f}" for one in f),
-                    f"{100 * self.frequency_change[k]:+.2f}",
-                    *(or_dash(one[k], ".3g") for one in loss),
-                    or_dash(100 * (loss[1][k] / loss[0][k] - 1) if loss[0][k] > 0 else np.nan, "+.1f"),
-                    or_dash(self.mac[k], ".3f"),
-                ]
-            )
-        return rows
+        (first, second), (loss, other) = self.frequencies, self.loss_factors
+        change = 100 * (np.divide(other, loss, out=np.full_like(loss, np.nan), where=loss > 0) - 1)
+        return in_columns(
+            ("mode", [f"{i + 1}" if i == j else f"{i + 1}, {j + 1}" for i, j in self.modes], ""),
+            ("first [Hz]", first, ".2f"),
+            ("second [Hz]", second, ".2f"),
+            ("by [%]", 100 * self.frequency_change, "+.2f"),
+            ("first loss", loss, ".3g"),
+            ("second loss", other, ".3g"),
+            ("by [%]", change, "+.1f"),
+            ("MAC", self.mac, ".3f"),
+        )
 
     def joint_rows(self) -> Rows:
         """Rows for each joint that both have, with a head: mean and greatest pressure, open share, stiffness."""
@@ -279,14 +274,13 @@ def differences(found: RunDifference, names: tuple[str, str] = ("first run", "se
     for side, name in enumerate(names):
         shift = (side - 0.5) * 0.24
         look = {"color": colour(side), "ms": 4, "ls": "none", "label": name}
-        f = found.frequencies[side]
-        axes[0].plot(places + shift, 100 * (f / base - 1), MARKS[side], **look)
-        ends = _interval(found, side, base)
-        if ends is not None:
+        run, load = (found.first, found.second)[side], found.loads[side]
+        axes[0].plot(places + shift, 100 * (found.frequencies[side] / base - 1), MARKS[side], **look)
+        if run.interval_ends is not None:
+            ends = 100 * (run.interval_ends[:, load, found.modes[:, side]] / base - 1)
             axes[0].vlines(places + shift, *ends, color=colour(side), lw=1.0)
         axes[1].plot(places + shift, found.loss_factors[side], MARKS[side], **look)
-        run = (found.first, found.second)[side]
-        pressure, share = carried(run, found.loads[side])
+        pressure, share = carried(run, load)
         axes[2].plot(pressure / 1e6, 100 * share, color=colour(side), lw=1.4 - 0.3 * side, ls=("-", "--")[side])
     axes[0].axhline(0, color=SOFT, lw=0.7, zorder=0)
     axes[0].set(ylabel="change of frequency [%]")
@@ -315,12 +309,3 @@ def carried(result: Result, load: int) -> tuple[Array, Array]:
     rising, share = pressure[bears], above[bears]
     most, all_of_it = rising[-1:], share[:1]
     return np.concatenate([0 * most, rising, most]), np.concatenate([all_of_it, share, 0 * most])
-
-
-def _interval(found: RunDifference, side: int, base: Array) -> Array | None:
-    """Where 5 and 95 % of each frequency lie (2, pair) [% from the first]; None without."""
-    run, load, modes = (found.first, found.second)[side], found.loads[side], found.modes[:, side]
-    if run.interval_low is None or run.interval_high is None:
-        return None
-    ends = np.stack([run.interval_low[load][modes], run.interval_high[load][modes]])
-    return np.asarray(100 * (ends / base - 1))

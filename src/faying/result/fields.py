@@ -136,12 +136,9 @@ class Recorded(Summary):
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and its arrays with their dimensions and units."""
-        rows = {
-            name: f"({', '.join(meta.dims)}) [{meta.unit}]"
-            for name, meta in declared(type(self)).items()
-            if getattr(self, name) is not None
-        }
-        return type(self).__name__, dict(list(rows.items())[:MAX_ARRAYS])
+        there = [(name, meta) for name, meta in declared(type(self)).items() if getattr(self, name) is not None]
+        rows = {name: f"({', '.join(meta.dims)}) [{meta.unit}]" for name, meta in there[:MAX_ARRAYS]}
+        return type(self).__name__, rows
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
@@ -150,11 +147,10 @@ class Recorded(Summary):
     def tree(self) -> Group:
         """Return it as a tree of named arrays, as a file holds it."""
         group = to_group(self)
-        labels = {
-            name: np.asarray(one, object if isinstance(one, tuple | list) else None)
+        coordinates = {
+            name: Variable(dims=(name,), values=np.asarray(one, object if isinstance(one, tuple | list) else None))
             for name, one in self.labels().items()
         }
-        coordinates = {name: Variable(dims=(name,), values=values) for name, values in labels.items()}
         attributes = {"Conventions": "CF-1.11", RECORD: self.KIND, **group.attributes}
         return with_preload(replace(group, variables={**coordinates, **group.variables}, attributes=attributes))
 
@@ -382,46 +378,36 @@ def from_group(kind: type[Kind], group: Group) -> Kind:
     for f in fields(cast(Any, kind)):
         meta: RecordedQuantity | None = f.metadata.get(KEY)
         name, hint = f.name, _without_none(hints[f.name])
-        found = None if meta is None else _variable_of(group, f.name, meta)
-        if meta is not None and found is not None:
-            given[f.name] = found.values.astype(meta.dtype)
+        inner = group.groups.get(meta.group, Group()) if meta is not None and meta.group else group
+        if meta is not None and (meta.name or name) in inner.variables:
+            given[name] = inner.variables[meta.name or name].values.astype(meta.dtype)
         elif meta is None and name in group.variables and name not in group.attributes:  # else labels of its name
-            given[f.name] = _as_hinted(group.variables[name].values, hint)
-        elif f"{f.name}.0" in group.variables:
-            count = sum(key.startswith(f"{f.name}.") for key in group.variables)
-            given[f.name] = tuple(group.variables[f"{f.name}.{k}"].values for k in range(count))
-        elif f"{f.name}.0" in group.groups:
-            count = sum(key.startswith(f"{f.name}.") for key in group.groups)
+            values = group.variables[name].values
+            truth = "bool" in str(hint) and values.dtype.kind == "i"  # written as small integers
+            given[name] = values.astype(bool) if truth else values
+        elif f"{name}.0" in group.variables:
+            count = sum(key.startswith(f"{name}.") for key in group.variables)
+            given[name] = tuple(group.variables[f"{name}.{k}"].values for k in range(count))
+        elif f"{name}.0" in group.groups:
+            count = sum(key.startswith(f"{name}.") for key in group.groups)
             kind_of_part: Any = get_args(hint)[0]
-            given[f.name] = tuple(from_group(kind_of_part, group.groups[f"{f.name}.{k}"]) for k in range(count))
-        elif f.name in group.groups and is_dataclass(hint):
-            given[f.name] = from_group(cast(Any, hint), group.groups[f.name])
-        elif f.name in group.attributes:
-            value = group.attributes[f.name]
+            given[name] = tuple(from_group(kind_of_part, group.groups[f"{name}.{k}"]) for k in range(count))
+        elif name in group.groups and is_dataclass(hint):
+            given[name] = from_group(cast(Any, hint), group.groups[name])
+        elif name in group.attributes:
+            value = group.attributes[name]
             if hint is str:
-                given[f.name] = "" if value == " " else str(value)
+                given[name] = "" if value == " " else str(value)
             elif hint in (int, float):
-                given[f.name] = hint(value)
+                given[name] = hint(value)
             else:
-                given[f.name] = _rebuilt(hint, json.loads(str(value)))
+                given[name] = _rebuilt(hint, json.loads(str(value)))
         elif f.default is MISSING and f.default_factory is MISSING:
-            if hint is hints[f.name]:
+            if hint is hints[name]:
                 where = f" in its group {meta.group!r}" if meta is not None and meta.group else ""
-                raise ReadError(f"it lacks {meta.name or f.name if meta is not None else f.name!r}{where}")
-            given[f.name] = None
+                raise ReadError(f"it lacks {meta.name or name if meta is not None else name!r}{where}")
+            given[name] = None
     return kind(**given)
-
-
-def _variable_of(group: Group, field_name: str, meta: RecordedQuantity) -> Variable | None:
-    """The variable of a field; None where the file has none."""
-    inner = group.groups.get(meta.group) if meta.group else group
-    return None if inner is None else inner.variables.get(meta.name or field_name)
-
-
-def _as_hinted(values: Any, hint: Any) -> Any:
-    """Truth values were written as small integers."""
-    text = str(hint)
-    return values.astype(bool) if "bool" in text and values.dtype.kind == "i" else values
 
 
 def _without_none(hint: Any) -> Any:
@@ -446,21 +432,15 @@ def _rebuilt(hint: Any, value: Any) -> Any:
         kinds = [inner[0]] * len(value) if len(inner) == 2 and inner[1] is Ellipsis else inner
         return tuple(_rebuilt(kind, part) for kind, part in zip(kinds, value, strict=True))
     if isinstance(origin, type) and issubclass(origin, Mapping):
-        return {_key(inner[0], key): _rebuilt(inner[1], part) for key, part in value.items()}
+        return {int(key) if inner[0] is int else key: _rebuilt(inner[1], part) for key, part in value.items()}
     return float(value) if hint is float else value
-
-
-def _key(kind: Any, key: str) -> Any:
-    return int(key) if kind is int else key
 
 
 def same(first: Any, second: Any) -> bool:
     """Whether two values are equal, arrays and dataclasses compared part by part; NaN equals NaN."""
     if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
         a, b = np.asarray(first), np.asarray(second)
-        return a.shape == b.shape and bool(
-            np.array_equal(a, b, equal_nan=a.dtype.kind in "fc" and b.dtype.kind in "fc")
-        )
+        return bool(np.array_equal(a, b, equal_nan=a.dtype.kind in "fc" and b.dtype.kind in "fc"))
     if is_dataclass(first) and not isinstance(first, type):
         return type(first) is type(second) and all(
             same(getattr(first, f.name), getattr(second, f.name)) for f in fields(first)

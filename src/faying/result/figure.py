@@ -139,8 +139,8 @@ def frequency_axes(result: RunRecord, modes: int, ax: Any = None) -> "list[Axes]
 def _against_preload(ax: Any, result: RunRecord, mode: int) -> None:
     """One mode: band, curve of the study, other laws, the test, and bonded faces where they lie near."""
     load, f = result.loads * 1e-3, result.frequencies[:, mode]
-    if result.interval_low is not None and result.interval_high is not None:
-        ends = result.interval_low[:, mode], result.interval_high[:, mode]
+    if result.interval_ends is not None:
+        ends = tuple(result.interval_ends[:, :, mode])
         band(ax, load, *ends, label="5 to 95 %")
     elif result.low is not None and result.high is not None:
         ends = result.low[:, mode], result.high[:, mode]
@@ -157,8 +157,7 @@ def _against_preload(ax: Any, result: RunRecord, mode: int) -> None:
         if result.alternative_frequencies is not None:
             of_law = result.alternative_frequencies[k, :, mode]
             ax.plot(load, of_law, ".--", color=colour(k + 2), ms=4, lw=1.0, label=plain(name))
-    c = result.comparison
-    if c is not None:
+    if (c := result.comparison) is not None:
         rows, columns = np.nonzero(c.modes == mode)
         if len(rows):
             ax.plot(load[rows], c.frequencies[rows, columns], "s", label=c.reference, **TEST_MARK)
@@ -214,9 +213,9 @@ def comparison(ax: Any, result: RunRecord) -> Any:
         place = modes + (row - (len(result.loads) - 1) / 2) * 0.62 / len(result.loads)
         error = 100 * (c.predicted[row] / c.frequencies[row] - 1)
         ax.plot(place, error, "o", ms=4, color=shades[row], label=f"computed, {load_text(load)}")
-        ends = _ends(result, row)
-        if ends is not None:
-            ax.vlines(place, *ends, color=shades[row], lw=2.0)
+        if result.interval_ends is not None:
+            here = np.where(c.modes[row] < 0, np.nan, result.interval_ends[:, row, np.maximum(c.modes[row], 0)])
+            ax.vlines(place, *(100 * (here / c.frequencies[row] - 1)), color=shades[row], lw=2.0)
         if c.published is not None:
             theirs = 100 * (c.published[row] / c.frequencies[row] - 1)
             ax.plot(place, theirs, "x", ms=5, color=shades[row], label=f"{plain(c.published_name)}, {load_text(load)}")
@@ -226,16 +225,6 @@ def comparison(ax: Any, result: RunRecord) -> Any:
     ax.grid(axis="y", alpha=0.3)
     legend_above(ax, 2 if c.published is not None else 4)
     return ax
-
-
-def _ends(result: RunRecord, row: int) -> Any:
-    """Where 5 and 95 % lie, in % from the test (2, test mode); None without intervals."""
-    c = result.comparison
-    if c is None or result.interval_low is None or result.interval_high is None:
-        return None
-    modes = np.maximum(c.modes[row], 0)
-    ends = np.stack([result.interval_low[row, modes], result.interval_high[row, modes]])
-    return np.where(c.modes[row] < 0, np.nan, 100 * (ends / c.frequencies[row] - 1))
 
 
 @drawing

@@ -66,10 +66,9 @@ class Interval(Summary):
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return 5 %, the best estimate and 95 % of each mode at the greatest preload."""
         ends = zip(self.low[-1], self.best[-1], self.high[-1], strict=True)
-        rows = {f"mode {k}": " .. ".join(f"{one:.4g}" for one in three) for k, three in enumerate(ends, 1)}
-        more = len(rows) - MAX_ROWS
-        if more > 0:
-            rows = dict(list(rows.items())[:MAX_ROWS]) | {"": f"{more} more modes"}
+        texts = [" .. ".join(f"{one:.4g}" for one in three) for three in ends]
+        rows = {f"mode {k}": text for k, text in enumerate(texts[:MAX_ROWS], 1)}
+        rows |= {"": f"{len(texts) - MAX_ROWS} more modes"} if len(texts) > MAX_ROWS else {}
         return "5 % .. best estimate .. 95 % [Hz] at the greatest preload", rows
 
     @property

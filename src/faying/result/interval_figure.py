@@ -88,7 +88,7 @@ def _test(ax: Any, result: "Result") -> None:
     score, c = Score.of(result), result.comparison
     if score is None or c is None:
         return
-    at = [k for k in range(score.test.shape[1]) if np.isfinite(score.test[-1, k])]
+    at = np.flatnonzero(np.isfinite(score.test[-1]))
     modes = c.modes[-1, at]
     miss = 100 * (score.test[-1, at] / result.frequencies[-1, modes] - 1)
     ax.plot(miss, modes, "s", ms=4.5, mfc="white", mec="black", mew=1.1, label="test")

@@ -354,18 +354,18 @@ class RunRecord(Recorded):
         rows |= {"dowels": listed(self.dowels)} if self.dowels else {}
         few = list(range(len(self.loads))) if len(self.loads) <= MAX_LOADS else [0, len(self.loads) // 2, -1]
         words = self._labels_of_loads
-        between = self.free is not None and self.bonded is not None
-        rows["frequencies"] = f"[Hz] {' | '.join(['free'] * between + [words[k] for k in few] + ['bonded'] * between)}"
+        bounds = None if self.free is None or self.bonded is None else (self.free, self.bonded)
+        heads = [words[k] for k in few]
+        rows["frequencies"] = f"[Hz] {' | '.join(heads if bounds is None else ['free', *heads, 'bonded'])}"
         shown = self.frequencies.shape[1] if self.frequencies.shape[1] <= MAX_MODES else MAX_MODES - 1
         for mode in range(shown):
             cells = [self.frequencies[k, mode] for k in few]
-            if self.free is not None and self.bonded is not None:
-                cells = [self.free[mode], *cells, self.bonded[mode]]
+            if bounds is not None:
+                cells = [bounds[0][mode], *cells, bounds[1][mode]]
             rows[f"mode {mode + 1}"] = " | ".join(f"{value:8.2f}" for value in cells)
         if self.frequencies.shape[1] > shown:
             rows["more modes"] = f"{self.frequencies.shape[1] - shown}, up to {self.frequencies[-1, -1]:.2f} Hz"
-        if self.comparison is not None:
-            c = self.comparison
+        if (c := self.comparison) is not None:
             error = np.abs(c.predicted / c.frequencies - 1)
             paired = np.isfinite(error)
             mean = f", mean deviation {np.mean(error[paired]):.2%}" if paired.any() else ""
@@ -457,8 +457,7 @@ class RunRecord(Recorded):
         for name in ("interval_sources", "alternatives", "parts", "dowels", "joints", "bolts", "tightening"):
             out[name] = list(getattr(self, name))
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
-        if self.comparison is not None:
-            c = self.comparison
+        if (c := self.comparison) is not None:
             facts = {"source": c.source, "published_name": c.published_name, "kind": c.kind}
             out["comparison"] = facts | in_units(c)
         if self.bolt_numbers is not None:
@@ -509,6 +508,13 @@ class RunRecord(Recorded):
         if self.interval_offsets is None or low is None or best is None or high is None:
             return None
         return Interval(sources=self.interval_sources, offsets=self.interval_offsets, low=low, best=best, high=high)
+
+    @property
+    def interval_ends(self) -> Array | None:
+        """5 and 95 % of each frequency (2, load, mode) [Hz]; None in a result without intervals."""
+        if self.interval_low is None or self.interval_high is None:
+            return None
+        return np.stack([self.interval_low, self.interval_high])
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""

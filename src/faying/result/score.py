@@ -39,17 +39,17 @@ class Score:
         rows = np.arange(len(result.loads))[:, None]
         modes = np.maximum(c.modes, 0)
         guesses = {"Faying": c.predicted}
-        before = np.vstack([np.full((1, test.shape[1]), np.nan), test[:-1]])
         if len(test) > 1:
-            ratio = np.vstack([np.full((1, test.shape[1]), np.nan), c.predicted[1:] / c.predicted[:-1]])
+            none = np.full((1, test.shape[1]), np.nan)
+            before, ratio = np.vstack([none, test[:-1]]), np.vstack([none, c.predicted[1:] / c.predicted[:-1]])
             guesses |= {"test at the load before": before, "that times Faying's ratio": before * ratio}
         if result.bonded is not None and result.free is not None:
             guesses |= {"faces bonded": result.bonded[modes], "faces apart": result.free[modes]}
         if c.published is not None:
             guesses[c.published_name] = c.published
         inside = None
-        if result.interval_low is not None and result.interval_high is not None:
-            low, high = result.interval_low[rows, modes], result.interval_high[rows, modes]
+        if result.interval_ends is not None:
+            low, high = result.interval_ends[:, rows, modes]
             inside = (low <= test) & (test <= high)
         return cls(loads=result.loads, test=test, guesses=guesses, inside=inside)
 

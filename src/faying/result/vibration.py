@@ -136,11 +136,9 @@ class VibrationResponse(Recorded):
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything but the curves in SI units, for JSON."""
-        plain = {name: getattr(self, name) for name in ("title", "name", "kind", "unit")}
-        life = {"unit": "s" if self.kind == "random" else "sweeps", "values": listed(_finite(self.life))}
-        finite = {name: listed(_finite(getattr(self, name))) for name in ("slip_margin", "slip_margin_worst")}
+        margins = {name: getattr(self, name) for name in ("slip_margin", "slip_margin_worst")}
         return {
-            **plain,
+            **{name: getattr(self, name) for name in ("title", "name", "kind", "unit")},
             "preload": {"unit": "N", "values": self.preload},
             "base": bool(self.base),
             "bolts": list(self.bolts),
@@ -148,8 +146,8 @@ class VibrationResponse(Recorded):
             "parts": list(self.parts),
             "estimates": list(ESTIMATES),
             **in_units(self, without=("line", "sample")),
-            **{name: {"unit": "1", "values": values} for name, values in finite.items()},
-            "life": life,
+            **{name: {"unit": "1", "values": _finite(values)} for name, values in margins.items()},
+            "life": {"unit": "s" if self.kind == "random" else "sweeps", "values": _finite(self.life)},
             "notes": [asdict(note) for note in self.notes],
         }
 
@@ -188,8 +186,9 @@ class VibrationResponse(Recorded):
         return axes
 
 
-def _finite(values: Array) -> Array:
-    return np.where(np.isfinite(values), values, np.nan)
+def _finite(values: Array) -> Any:
+    """Lists with None in place of what is not finite."""
+    return listed(np.where(np.isfinite(values), values, np.nan))
 
 
 def life_text(seconds: float) -> str:

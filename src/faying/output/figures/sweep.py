@@ -59,15 +59,9 @@ def relative_change(ax: Any, sweep: Sweep) -> Any:
         if not len(known):
             continue
         first, last = f[known[0]], f[known[-1]]
-        ax.plot(
-            x,
-            100 * (f / first - 1),
-            marker=".",
-            color=colour(mode),
-            ls=("-", "--", "-.")[mode // len(COLOURS) % 3] if axis.numeric else "none",
-            ms=3.5,
-            label=f"{mode + 1}: {first:.1f} to {last:.1f} Hz",
-        )
+        line = ("-", "--", "-.")[mode // len(COLOURS) % 3] if axis.numeric else "none"
+        look = {"marker": ".", "color": colour(mode), "ls": line, "ms": 3.5}
+        ax.plot(x, 100 * (f / first - 1), label=f"{mode + 1}: {first:.1f} to {last:.1f} Hz", **look)
     ax.set(xlabel=label, ylabel="change of frequency [%]")
     if log:
         ax.set_xscale("log")

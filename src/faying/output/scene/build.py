@@ -294,8 +294,6 @@ def of_file(path: str | Path, unit: str | None = None) -> Scene:
         study = Study.read(file)
         return of_mesh(checked_mesh(study), study)
     if kind is RESULT:
-        from faying.result import Result
-
         return of_result(Result.load(file))
     if not meshed:
         return of_step(file)
