@@ -17,7 +17,6 @@ from faying.halfspace import figure as half_space
 from faying.identify import prediction as predicting
 from faying.identify.backbones import Backbones
 from faying.identify.identification import figure as identification
-from faying.identify.identification import identification_axes
 from faying.identify.identify import identify_model
 from faying.identify.noise import Losses
 from faying.identify.prediction import Prediction
@@ -408,7 +407,7 @@ FIGURES = {
     "docs/gallery/front_page.py:draw": lambda: script("front_page").draw(result()),
     "result/figure.py:frequency_axes": lambda: whole(result().plot()),
     "result/backbone.py:figure": two_curves,
-    "result/backbone.py:backbone_axes": lambda: whole(curve().plot()),
+    "result/backbone.py:plot": lambda: whole(curve().plot()),
     "result/backbone.py:measured": lambda: backbone.measured(measured_points()),
     "result/vibration.py:plot": lambda: whole(shaken().plot()),
     "result/vibration.py:life_figure": lambda: vibration.life_figure(
@@ -442,10 +441,10 @@ FIGURES = {
     "surface/figure.py:overview_figure": lambda: overview(scan()),
     "surface/figure.py:overview_figure, profile": lambda: overview(scan().profile("x", 3)),
     "identify/prediction.py:intervals": lambda: predicting.intervals(prediction()),
-    "identify/prediction.py:interval_axes": lambda: whole(prediction().plot()),
+    "identify/prediction.py:plot": lambda: whole(prediction().plot()),
     "identify/prediction.py:tornado": lambda: predicting.tornado(prediction()),
     "identify/prediction.py:scatter_matrix": lambda: predicting.scatter_matrix(prediction()),
     "identify/prediction.py:backbones": lambda: predicting.backbones(prediction()),
     "identify/identification.py:figure": lambda: identification(found()),
-    "identify/identification.py:identification_axes": lambda: whole(identification_axes(found())),
+    "identify/identification.py:plot": lambda: whole(found().plot()),
 }

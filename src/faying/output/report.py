@@ -154,14 +154,12 @@ def _tables(every: Sequence[ReportSection], result: Result, pictures: dict[str, 
 
 
 def _response(result: Result) -> list[str]:
-    """Frequency responses as curves that zoom."""
     if result.response is None:
         return []
     return ["<h3>Frequency response</h3>", page.curves("response", response_curves(result))]
 
 
 def _backbones(result: Result) -> list[str]:
-    """Curves over amplitude that zoom."""
     if not result.backbones:
         return []
     head = f"<h3>Frequency and damping of mode {result.backbones[0].mode} over amplitude</h3>"
@@ -215,11 +213,6 @@ class ReportFigure:
     mark: str = ""
 
 
-def _has_joints(result: Result) -> bool:
-    """Whether there are joints to draw."""
-    return bool(result.joints)
-
-
 def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
     def drawn(result: Result) -> Any:
         fig = new_figure(WIDE, 3.2)
@@ -249,14 +242,14 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
         "joints",
         ReportFigure(
             name="pressure",
-            draw=structure.pressures,
+            draw=lambda result: structure.faces(result, "pressure"),
             caption="Pressure where the faces of each joint touch, at the least and the greatest preload. Grey: open; "
             "the line is the edge of contact.",
-            applies=_has_joints,
+            applies=lambda result: bool(result.joints),
         ),
         ReportFigure(
             name="slip",
-            draw=structure.slips,
+            draw=lambda result: structure.faces(result, "slip"),
             caption="Tangential displacement of the second face against the first while the bolts are tightened. Grey: "
             "open.",
             applies=lambda result: result.slip is not None and bool((result.slip > 0).any()),
@@ -265,7 +258,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
             name="law",
             draw=_on_axes(structure.law_curves),
             caption="Stiffness per area over the pressures that the joints reach at the greatest preload.",
-            applies=_has_joints,
+            applies=lambda result: bool(result.joints),
         ),
         "surfaces",
         "conductance",
@@ -277,7 +270,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
             draw=structure.frequencies,
             caption="Frequency of each mode against preload. Band: 5 to 95 % of all that is not known, where the study "
             "asks for intervals, else the range that the law states. Dotted, where it is near: faces bonded.",
-            applies=_has_joints,
+            applies=lambda result: bool(result.joints),
         ),
         "damping",
         ReportFigure(

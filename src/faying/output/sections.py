@@ -116,9 +116,7 @@ def _modes(result: Result) -> tuple[ReportSection, ...]:
             below=f"{JOINED.format(result.damping, result.joint_state) if result.joints else ''}{rigid}",
         ),
         ReportSection(
-            name="ranges",
-            rows=table.ranges(result),
-            title="Range of the frequencies, from that of the stiffness",
+            name="ranges", rows=table.ranges(result), title="Range of the frequencies, from that of the stiffness"
         ),
         ReportSection(
             name="damping",

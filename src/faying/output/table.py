@@ -154,7 +154,6 @@ def waves(result: Result) -> Rows:
 
 
 def _over_draws(values: Array, form: str) -> str:
-    """Least, median and greatest of some draws."""
     return " .. ".join(format(np.quantile(values, share), form) for share in (0.0, 0.5, 1.0))
 
 

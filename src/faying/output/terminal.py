@@ -50,8 +50,12 @@ def text(rows: Rows, left: Sequence[int] | None = None, width: int = WIDTH) -> s
     return "\n\n".join(out)
 
 
+def indented(rows: Rows, left: Sequence[int] | None = None, width: int = WIDTH) -> list[str]:
+    """The lines of aligned rows, two columns in."""
+    return [f"{GAP}{line}".rstrip() for line in text(rows, left, width - len(GAP)).splitlines()]
+
+
 def _total(widths: Sequence[int]) -> int:
-    """The width of a line of columns."""
     return sum(widths) + len(GAP) * (len(widths) - 1)
 
 
@@ -110,12 +114,7 @@ def wrapped(sentence: str, width: int = WIDTH, first: str = "", rest: str = "") 
     if len(first) + len(sentence) <= width:
         return [first + sentence]
     return wrap(
-        sentence,
-        width,
-        initial_indent=first,
-        subsequent_indent=rest,
-        break_long_words=False,
-        break_on_hyphens=False,
+        sentence, width, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False
     ) or [""]
 
 

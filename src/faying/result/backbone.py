@@ -314,6 +314,7 @@ class Backbone(Recorded):
         columns = ([f"{value:.8g}" for value in getattr(self, name)] for name in names)
         return write_text(Path(path), csv_text([heads, *zip(*columns, strict=True)]))
 
+    @drawing
     @checked_call
     def plot(self, ax: Any = None) -> "list[Axes]":
         """Draw frequency and damping against the acceleration, with what was measured and the static cycle.
@@ -327,7 +328,13 @@ class Backbone(Recorded):
         Raises:
             InputError: The number of axes does not fit.
         """
-        return backbone_axes(self, ax)
+        axes = axes_of(ax, 2, width=COLUMN, height=2.7)
+        for one, quantity in zip(axes, ("frequency", "damping"), strict=True):
+            panel(one, [self], quantity)
+            one.set_xlabel(f"acceleration at {in_mm(self.at)} [m/s²]")
+        axes[1].set_title(f"{headline(self.title)}: mode {self.mode}, {load_text(self.preload)}")
+        legend_above(axes[0], 1)
+        return axes
 
 
 ROUNDING = 1e-9  # of the greatest damping: less is rounding
@@ -422,18 +429,6 @@ def figure(curves: Sequence[Backbone], measured: Sequence[MeasuredBackbone] = ()
     fig.suptitle(f"{headline(first.title)}: mode {first.mode}")
     legend_above(upper, 1)
     return fig
-
-
-@drawing
-def backbone_axes(curve: Backbone, ax: Any = None) -> "list[Axes]":
-    """Draw frequency and damping of a curve, one axes each."""
-    axes = axes_of(ax, 2, width=COLUMN, height=2.7)
-    for one, quantity in zip(axes, ("frequency", "damping"), strict=True):
-        panel(one, [curve], quantity)
-        one.set_xlabel(f"acceleration at {in_mm(curve.at)} [m/s²]")
-    axes[1].set_title(f"{headline(curve.title)}: mode {curve.mode}, {load_text(curve.preload)}")
-    legend_above(axes[0], 1)
-    return axes
 
 
 @drawing

@@ -64,18 +64,9 @@ def face_map(ax: Any, result: RunRecord, field: str, load: int = -1, joint: int 
     ).paint(ax)
 
 
-def pressures(result: RunRecord) -> Any:
-    """Return a figure of the pressure on each joint at the least and the greatest preload."""
-    return _faces(result, "pressure")
-
-
-def slips(result: RunRecord) -> Any:
-    """Return a figure of the slip in each joint at the least and the greatest preload."""
-    return _faces(result, "slip")
-
-
 @drawing
-def _faces(result: RunRecord, field: str) -> Any:
+def faces(result: RunRecord, field: str) -> Any:
+    """Return a figure of pressure or slip on each joint at the least and the greatest preload."""
     loads = sorted({0, len(result.loads) - 1})
     tall = []
     for joint in range(len(result.joints)):

@@ -88,13 +88,13 @@ class Receptance:
 
 @dataclass(frozen=True, kw_only=True)
 class DampedLevels:
-    """What a result has at levels of acceleration.
+    """Modes at levels of acceleration, of one load (level, mode) or of all loads of a result (load, level, mode).
 
     Args:
         levels: Peak acceleration of the point that moves most [m/s2] (level,).
-        frequencies: [Hz] (load, level, mode).
-        damping, low, high: Damping ratio and its ends [-] (load, level, mode).
-        slip, error: Part of it by slip, and error of that part [-] (load, level, mode).
+        frequencies: At the friction of the study or the median of its prior [Hz].
+        damping, low, high: Ratio of slip and rest together [-]: median, and both ends.
+        slip, error: Ratio of slip alone at the median, and the error of that by the iteration [-].
     """
 
     levels: Array

@@ -37,9 +37,7 @@ def of_result(result: Result) -> Scene:
     by_name = {face.name: k for k, face in enumerate(faces) if face.name}
     joints = [
         SceneJoint(
-            name=name,
-            faces=tuple(by_name[face] for face in pair if face in by_name),
-            map=joint_map_of(result, k),
+            name=name, faces=tuple(by_name[face] for face in pair if face in by_name), map=joint_map_of(result, k)
         )
         for k, (name, pair) in enumerate(zip(result.joints, result.joint_faces, strict=False))
     ]
@@ -176,7 +174,6 @@ def drawn(diameter: float, extent: Sequence[float], size: float) -> tuple[float,
 
 
 def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[SceneBolt, ...]:
-    """The bolts of a study on its mesh."""
     from faying.bolt.bolt import Bolt
     from faying.fe.sides import face_centre
 
@@ -201,7 +198,6 @@ def _dowels(result: Result) -> tuple[SceneBolt, ...]:
 
 
 def _planned_dowels(study: "Study", mesh: Mesh) -> tuple[SceneBolt, ...]:
-    """The dowels of a study on its mesh."""
     places = [dowel.placed(mesh) for dowel in study.dowels]
     return tuple(SceneBolt(name=p.dowel.name, seats=p.seats, diameter=p.diameter, head=0.0) for p in places)
 
