@@ -54,11 +54,9 @@ def answer(arguments: Sequence[str], folder: Path) -> dict[str, Any]:
 
 def _event(line: str) -> dict[str, Any] | None:
     """What a line of progress says; None for other words."""
-    try:
-        found = json.loads(line) if line.startswith("{") else None
-    except json.JSONDecodeError:
-        return None
-    return found
+    with suppress(json.JSONDecodeError):
+        return dict(json.loads(line)) if line.startswith("{") else None
+    return None
 
 
 @final
@@ -129,14 +127,12 @@ class Job:
     def state(self) -> dict[str, Any]:
         """What the page shows of it."""
         done = self._process.returncode == 0
-        end = None if self.running else "cancelled" if self.cancelled else "done" if done else "failed"
-        seconds = (self.ended or time.time()) - self.started
         return {
             "command": self.command,
             "running": self.running,
-            "end": end,
+            "end": None if self.running else "cancelled" if self.cancelled else "done" if done else "failed",
             "started": self.started,
-            "seconds": seconds,
+            "seconds": (self.ended or time.time()) - self.started,
             "words": self.words,
             **self.progress,
         }

@@ -144,8 +144,6 @@ def removed(text: str, path: KeyPath) -> str:
 
 
 class _Maker:
-    """Makes the groups of a study."""
-
     def __init__(self, data: Mapping[str, Any], files: Mapping[str, Sequence[str]], lines: Mapping[str, int]) -> None:
         self.data, self.files, self.lines = data, files, lines
         self.faces = sorted(set(_faces(data)))
@@ -189,13 +187,12 @@ class _Maker:
     def _outer(self, group: FormGroup, path: KeyPath, name: str, inner: Inner, table: Any) -> Iterator[FormGroup]:
         """A table that holds names of the user's own alone: its keys, or its tables, stand for themselves."""
         what = inner.keys[NAME]
-        if isinstance(what, Key):
-            if table is not None:
-                yield from self.groups(path, name, inner, table)
-            else:
-                group.additions.append(self._new_name(path, what))
-            return
-        yield from self._named(group, path, name, what, table if isinstance(table, Mapping) else {})
+        if isinstance(what, Key) and table is not None:
+            yield from self.groups(path, name, inner, table)
+        elif isinstance(what, Key):
+            group.additions.append(self._new_name(path, what))
+        else:
+            yield from self._named(group, path, name, what, table if isinstance(table, Mapping) else {})
 
     def _named(
         self, group: FormGroup, path: KeyPath, name: str, what: Key | Inner, table: Mapping[str, Any]
@@ -208,10 +205,9 @@ class _Maker:
         group.additions.append(self._new_name(path, what))
 
     def _new_name(self, path: KeyPath, what: Key | Inner) -> FormAddition:
-        suggestions = self.faces if path[-1] in ("face_size", "face") else ()
-        is_key = isinstance(what, Key)
-        label = f"{path[-1]}.NAME"
-        return FormAddition(path=path, label=label, says=what.says, named=True, is_key=is_key, suggestions=suggestions)
+        words = self.faces if path[-1] in ("face_size", "face") else ()
+        label, is_key = f"{path[-1]}.NAME", isinstance(what, Key)
+        return FormAddition(path=path, label=label, says=what.says, named=True, is_key=is_key, suggestions=words)
 
     def _scatter(self, path: KeyPath) -> FormAddition:
         names = [*short_keys(), *OWN]
@@ -223,9 +219,8 @@ class _Maker:
             heads = [room] * (found.named == "optional") + [f"{room}.{owner}" for owner in owners]
             numbers = (varied(f"{head}.{name}") for head in heads for name in found.numbers)
             names += [number.key for number in numbers if number is not None and number.scatters]
-        return FormAddition(
-            path=path, label="uncertain.NAME", says=FREE.says, named=True, is_key=True, suggestions=names
-        )
+        label = "uncertain.NAME"
+        return FormAddition(path=path, label=label, says=FREE.says, named=True, is_key=True, suggestions=names)
 
     def _field(self, path: KeyPath, name: str, key: Key, *, first: bool = False) -> FormField:
         label, table = str(path[-1]), next((one for one in reversed(path[:-1]) if isinstance(one, str)), "")
@@ -303,19 +298,14 @@ def _inner_of(path: KeyPath) -> Inner:
 def _value_at(data: Any, path: KeyPath) -> Any:
     """What stands at a path; None where nothing does."""
     for one in path:
-        inside = (
-            isinstance(data, list) and 0 <= one < len(data)
-            if isinstance(one, int)
-            else (isinstance(data, Mapping) and one in data)
-        )
-        if not inside:
-            return None
-        data = data[one]
+        if isinstance(one, int):
+            data = data[one] if isinstance(data, list) and 0 <= one < len(data) else None
+        else:
+            data = data.get(one) if isinstance(data, Mapping) else None
     return data
 
 
 def _faces(data: Any, key: str = "") -> Iterator[str]:
-    """The names of faces in a study."""
     if key in ("face", "face_size") and isinstance(data, Mapping) and "part" not in data:
         yield from data
     elif key in ("face", "faces", "walls") and isinstance(data, str | list):

@@ -72,16 +72,10 @@ class Project:
     def listed(self) -> dict[str, Any]:
         """What lies in the folder, for the page."""
         files = [{"name": path.name, "size": path.stat().st_size, "kinds": _uses(path)} for path in self._files()]
-        results = []
-        if self.results.is_dir():
-            results = [path.name for path in sorted(self.results.iterdir()) if path.is_file() and path.name[0] != "."]
-        return {
-            "folder": str(self.folder),
-            "study": self.study_name,
-            "files": files,
-            "results": results,
-            "text": self.text(),
-        }
+        made = sorted(self.results.iterdir()) if self.results.is_dir() else []
+        results = [path.name for path in made if path.is_file() and path.name[0] != "."]
+        known = {"folder": str(self.folder), "study": self.study_name, "files": files}
+        return {**known, "results": results, "text": self.text()}
 
     def by_kind(self) -> dict[str, list[str]]:
         """The names of the files in the folder, by what they may be."""

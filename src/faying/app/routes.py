@@ -136,10 +136,8 @@ class Session:
         if not all(isinstance(one, str | int) and not isinstance(one, bool) for one in path):
             raise InputError("the path of a key has names and places in lists only")
         place = tuple(path)
-        if action == "add":
-            return {"text": added(text, place)}
-        if action == "remove":
-            return {"text": removed(text, place)}
+        if action in ("add", "remove"):
+            return {"text": (added if action == "add" else removed)(text, place)}
         if not isinstance(value, str):
             raise InputError("the request lacks what was written in the field")
         return {"text": changed(text, place, value)}

@@ -119,15 +119,12 @@ class Runs:
             try:
                 result = self._load(name)
             except FayingError as fault:  # of another version, or damaged: it is listed, and says so when it is taken
-                self._said[name] = facts | {"title": str(fault), "laws": [], "preloads": [], "study": ""}
+                facts |= {"title": str(fault), "laws": [], "preloads": [], "study": ""}
             else:
                 laws = dict.fromkeys(str(law.get("law", law.get("name", ""))) for law in result.laws)
-                self._said[name] = facts | {
-                    "title": result.title,
-                    "laws": list(laws),
-                    "preloads": list(result.load_names),
-                    "study": result.provenance.study,
-                }
+                facts |= {"title": result.title, "laws": list(laws), "preloads": list(result.load_names)}
+                facts["study"] = result.provenance.study
+            self._said[name] = facts
         return dict(self._said[name])
 
 

@@ -36,7 +36,6 @@ class OpenScan:
         if not isinstance(scan, Scan):
             raise InputError("a line scan has no map; its picture shows the line")
         self.measured, self.scan = scan, levelled(scan, 1)
-
         self._spectrum: Spectrum | None = None
 
     @classmethod
@@ -102,11 +101,7 @@ class OpenScan:
             values = heights[up[0] : up[-1], index]
         places = (first + np.arange(len(values)) + 0.5) * step
         keep = _outline(values)
-        return {
-            "along": places[keep].tolist(),
-            "heights": listed(values[keep]),
-            "at": float((index + 0.5) * other),
-        }
+        return {"along": places[keep].tolist(), "heights": listed(values[keep]), "at": float((index + 0.5) * other)}
 
     def spectrum(self, band: tuple[float, float] | None = None) -> dict[str, Any]:
         """Return the power spectrum with the power law that is fitted over a band, as `faying surface` fits it.

@@ -117,10 +117,8 @@ class _Handler(BaseHTTPRequestHandler):
         """Status and reason where a request is not one of the page's own; None where it is."""
         if f"http://{self.headers.get('Host', '')}" not in self.server.origins:
             return 403, "the Host of the request is not this server"
-        origin = self.headers.get("Origin")
-        if origin is not None and origin not in self.server.origins:
-            return 403, "the request comes from another page"
-        if self.headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin"):
+        origin, site = self.headers.get("Origin"), self.headers.get("Sec-Fetch-Site", "none")
+        if (origin is not None and origin not in self.server.origins) or site not in ("none", "same-origin"):
             return 403, "the request comes from another page"
         token = path.split("/")[1:2]
         if not token or not hmac.compare_digest(token[0].encode(), self.server.token.encode()):

@@ -107,16 +107,10 @@ def command(
         found, rigid = modes_with_joint(
             made, matrices, stiffness_unit=stiffness_unit, mass_unit=mass_unit, mass=mass, dofs=dofs, count=count
         )
-        document["modes"] = {
-            "frequencies [Hz]": found.frequencies.tolist(),
-            "rigid": rigid,
-            "loss_factors": found.loss_factors.tolist(),
-        }
+        modes = found.frequencies.tolist(), found.loss_factors.tolist()
+        document["modes"] = {"frequencies [Hz]": modes[0], "rigid": rigid, "loss_factors": modes[1]}
         lines += ["", f"{'mode':>6}{'f [Hz]':>14}{'loss factor':>14}"]
-        lines += [
-            f"{i:>6}{f:>14.4f}{eta:>14.3e}"
-            for i, (f, eta) in enumerate(zip(found.frequencies, found.loss_factors, strict=True), 1)
-        ]
+        lines += [f"{i:>6}{f:>14.4f}{eta:>14.3e}" for i, (f, eta) in enumerate(zip(*modes, strict=True), 1)]
     if solver is not None:
         files = made.write(solver, out or model.parent / "joint")
         document["files"] = [str(file) for file in files]

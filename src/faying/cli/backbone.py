@@ -1,5 +1,6 @@
 """faying backbone STUDY.toml --friction 0.2"""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -117,21 +118,17 @@ def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
     from faying.joint.preload_case import preload_index
     from faying.study.keys.backbone import accelerations, laws
 
-    given: dict[str, Any] = {"mode": options["mode"], "harmonics": options["harmonics"]}
-    if options["amplitude"] is not None:
-        given["amplitude"] = accelerations(options["amplitude"], "--amplitude")
-    if options["at"] is not None:
-        given["at"] = place(options["at"])
-    if options["rest_damping"] is not None:
-        rest = options["rest_damping"]
-        given["rest_damping"] = "law" if rest == "law" else plain(rest, "--rest-damping")
-    if options["coulomb"]:
-        given["slip"] = "coulomb"
-    if options["law"] is not None:
-        given["laws"] = laws(options["law"].split(","), "--law")
-    friction = None
-    if options["friction"] is not None:
-        friction = [plain(part, "--friction") for part in options["friction"].split(",")]
+    reads: dict[str, Callable[[Any], Any]] = {
+        "amplitude": lambda text: accelerations(text, "--amplitude"),
+        "at": place,
+        "rest_damping": lambda text: "law" if text == "law" else plain(text, "--rest-damping"),
+        "law": lambda text: laws(text.split(","), "--law"),
+        "friction": lambda text: [plain(part, "--friction") for part in text.split(",")],
+    }
+    given = {name: read(options[name]) for name, read in reads.items() if options[name] is not None}
+    given |= {"mode": options["mode"], "harmonics": options["harmonics"], "laws": given.pop("law", None)}
+    given |= {"slip": "coulomb"} if options["coulomb"] else {}
+    friction = given.pop("friction", None)
     preloads = options["preloads"]
     if "all" in preloads:
         if len(preloads) > 1:

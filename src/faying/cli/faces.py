@@ -6,8 +6,7 @@ from typing import Any
 import click
 
 from faying.cli.options import PATH
-from faying.output.terminal import WIDTH, folded
-from faying.output.terminal import text as aligned
+from faying.output.terminal import folded, indented
 from faying.text import json_text
 
 WIDE = 18  # letters of a face's name in the table
@@ -37,7 +36,8 @@ def text(facts: Any) -> str:
         lines += [f"{one.name}: {len(faces)} faces, {1e6 * one.volume:.4g} cm3, within {size} mm"]
         named = any(face.name for face in faces)
         head = ["no", *(["name"] if named else []), "kind", "area mm2", "normal", "centre mm", "r mm", "next to"]
-        lines += [*_aligned([head, *(_row(face, named) for face in faces)]), ""]
+        rows = [head, *(_row(face, named) for face in faces)]
+        lines += [*indented(rows, left=range(len(head))), ""]
     if facts.contacts:
         lines.append("faces that look at each other")
         rows = [["part", "no", "part", "no", "area mm2", "gap mm"]]
@@ -45,7 +45,7 @@ def text(facts: Any) -> str:
             [c.first[0], str(c.first[1]), c.second[0], str(c.second[1]), f"{1e6 * c.area:.4g}", f"{1e3 * c.gap:.3g}"]
             for c in facts.contacts
         ]
-        lines += [*_aligned(rows), ""]
+        lines += [*indented(rows, left=range(len(rows[0]))), ""]
     lines += [f"note: {note.text}" for note in facts.notes]
     return folded("\n".join(lines).rstrip())
 
@@ -67,7 +67,3 @@ def _direction(normal: Any) -> str:
 
     words = [word for word, axis in AXES.items() if max(abs(a - b) for a, b in zip(axis, normal, strict=True)) < 1e-6]
     return words[0] if words else " ".join(f"{x:.2f}" for x in normal)
-
-
-def _aligned(rows: list[list[str]]) -> list[str]:
-    return [f"  {line}".rstrip() for line in aligned(rows, left=range(len(rows[0])), width=WIDTH - 2).splitlines()]

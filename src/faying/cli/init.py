@@ -1,5 +1,6 @@
 """faying init [STUDY.toml]"""
 
+import json
 from pathlib import Path
 
 import click
@@ -15,10 +16,6 @@ def command(study: Path, force: bool, as_json: bool) -> None:
     """Write a commented study to STUDY, with the geometry and the scan of a small bolted pair, so that it runs."""
     from faying.setup.template import write
 
-    made = write(study, force=force)
-    if as_json:
-        import json
-
-        click.echo(json.dumps({"files": [str(path) for path in made]}))
-    else:
-        click.echo(f"written: {', '.join(str(path) for path in made)}; run it with: faying run {study}")
+    made = list(map(str, write(study, force=force)))
+    text = f"written: {', '.join(made)}; run it with: faying run {study}"
+    click.echo(json.dumps({"files": made}) if as_json else text)

@@ -68,12 +68,6 @@ def cli() -> None:
 FULL = (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)  # the output goes where nothing fits
 
 
-def _drop_output() -> None:
-    """Let what cannot be written go, so that the interpreter does not try it again at its end."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
 def _stop(*_: object) -> None:
     raise KeyboardInterrupt
 
@@ -117,7 +111,8 @@ def main(argv: list[str] | None = None) -> None:
     except OSError as fault:
         if fault.errno not in FULL:
             raise
-        _drop_output()
+        with suppress(OSError, ValueError):  # what cannot be written goes, or the interpreter tries it again at its end
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         click.echo(f"faying: cannot write the output: {fault.strerror}", err=True)
         sys.exit(1)
     except FayingError as fault:

@@ -61,8 +61,7 @@ def command(
         click.echo(json_text(found))
         return
     click.echo(f"{found['source']}: {found['unknowns']:,} unknowns, {found['solver']}")
-    click.echo(f"mass along x, y, z: {', '.join(f'{m:.6g} kg' for m in found['mass']['values'])}")
-    click.echo("")
+    click.echo(f"mass along x, y, z: {', '.join(f'{m:.6g} kg' for m in found['mass']['values'])}\n")
     for number, value in enumerate(found["frequencies"]["values"], start=1):
         click.echo(f"{number:4d} {value:14.6f} Hz")
     if found["missed"]:

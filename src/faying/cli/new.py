@@ -18,11 +18,7 @@ from faying.text import json_text
 @click.option("--scan", type=PATH, help="Scan of one face (default: a synthetic one of a fine finish).")
 @click.option("--out", type=PATH, default="study.toml", show_default=True, help="The study file.")
 @click.option("--mesh-bolts", is_flag=True, help="Mesh bolts that are drawn with their nuts (default: beams).")
-@click.option(
-    "--yes",
-    is_flag=True,
-    help="Ask nothing; assume steel, class 8.8 and what its sheet accepts; print it.",
-)
+@click.option("--yes", is_flag=True, help="Ask nothing; assume steel, class 8.8 and what its sheet accepts; print it.")
 @click.option("--force", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found and written as JSON; asks nothing.")
 def command(

@@ -122,7 +122,6 @@ def _sentences(result: Any) -> list[str]:
 
 
 def _item(text: str) -> list[str]:
-    """A note as an item of a list."""
     from faying.output.terminal import wrapped
 
     return wrapped(text, first="- ", rest="  ")

@@ -48,7 +48,6 @@ def command(study: Path, out: Path | None, plot: Path | None, as_json: bool, pro
 
 
 def _text(found: Any) -> str:
-    """All answers as text."""
     from faying.output import table
     from faying.output.terminal import wrapped
     from faying.service.table import HELP, TABLES, heading

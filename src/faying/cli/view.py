@@ -42,7 +42,6 @@ def command(file: Path, out: Path | None, unit: str | None, vtu: Path | None, sh
 
 
 def _for_paraview(file: Path, vtu: Path, *, page_too: bool) -> None:
-    """Write a result for ParaView."""
     from faying.result import Result
 
     if kind_of(file) is not RESULT:

@@ -76,10 +76,8 @@ def command(
     from faying.style import check_figure, save
 
     if assemblies:
-        given = {
-            name for name in NOT_OF_ASSEMBLIES if click.get_current_context().get_parameter_source(name) is not DEFAULT
-        }
-        if given:
+        source = click.get_current_context().get_parameter_source
+        if given := [name for name in NOT_OF_ASSEMBLIES if source(name) is not DEFAULT]:
             raise InputError(f"--assemblies gives tables and a file; leave out --{min(given)}")
         _assembled(Study.read(study), assemblies, seed, jobs=jobs, out=out, as_json=as_json, progress=progress)
         return
@@ -91,24 +89,16 @@ def command(
         drawing.scatter_matrix: scatter,
         drawing.backbones: bands,
     }
-    for file in figures.values():
-        if file:
-            check_figure(file)
+    for file in filter(None, figures.values()):
+        check_figure(file)
     plan = Study.read(study)
     check(plan, samples)
     if backbones:
         choice_of(plan, samples, backbones)
     out = out or plan.results / "prediction.nc"
     with new_folder(out.parent, "give another file with --out"), Shown("predict", progress) as report:
-        found = predict(
-            plan,
-            samples,
-            seed,
-            jobs=jobs or os.cpu_count() or 1,
-            out=out,
-            report=report,
-            backbones=backbones or 0,
-        )
+        jobs = jobs or os.cpu_count() or 1
+        found = predict(plan, samples, seed, jobs=jobs, out=out, report=report, backbones=backbones or 0)
     files = [out, *(save(draw(found), file) for draw, file in figures.items() if file)]
     if html:
         files.append(write_text(html, predicted(found)))
@@ -118,7 +108,6 @@ def command(
 def _assembled(
     plan: "Study", count: int, seed: int, *, jobs: int | None, out: Path | None, as_json: bool, progress: Form | None
 ) -> None:
-    """Predict the scatter between assemblies of one structure, and show it."""
     from faying.identify.predict import predict
     from faying.identify.reassembly import check_assemblies
     from faying.output.assemblies import text

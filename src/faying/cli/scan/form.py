@@ -36,9 +36,7 @@ def command(file: Path, is_gap: bool, as_json: bool, plot: Path | None, **given:
     if as_json:
         click.echo(json_text({"file": str(file), **fit.to_dict()}))
         return
-    click.echo(text(file.name, fit))
-    if plot:
-        click.echo(f"\nwritten to {plot}")
+    click.echo(text(file.name, fit) + (f"\n\nwritten to {plot}" if plot else ""))
 
 
 def text(name: str, fit: Any) -> str:

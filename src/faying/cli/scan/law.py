@@ -13,7 +13,7 @@ import click
 from faying.cli.options import PATH, NamedPath, quantity
 from faying.errors import InputError
 from faying.files import write_text
-from faying.output.terminal import folded
+from faying.output.terminal import folded, indented
 from faying.text import csv_text as csv_rows
 from faying.text import json_text
 from faying.units import lengths, parse, show
@@ -179,7 +179,9 @@ def command(
         choice = pick(kind, given, None, pair) if seen is None else seen.choose(kind, given)
         law = choice.law
         if program is not None:
-            click.echo(interaction(law, program, unit), nl=False)
+            from faying.export.law_tables import law_tables
+
+            click.echo(law_tables(law, program, unit=unit or "m"), nl=False)
             return
         response = law.at_pressure(pressures if pressure is not None else reached(law, pressures), after=after)
     h = conducted(law, response, pair) if options["conductance"] else None
@@ -194,22 +196,17 @@ def command(
         else:
             save(curves({law.name: response}), plot)
     if as_json:
-        about = {"reason": choice.reason, "mates": choice.mates} | (
-            {"surface": facts_of(mates)} if mates is not None and on_scan else {}
-        )
+        about: dict[str, Any] = {"reason": choice.reason, "mates": choice.mates}
+        if mates is not None and on_scan:
+            from faying.study.keys.surface import Surface
+
+            about["surface"] = Surface(faces=mates.faces, origin=mates.faces.origin).facts()
         about |= {} if h is None else {"h": quantity(h.tolist(), HEAT)}
         about |= {} if after is None else {"after": quantity(parse(after, "Pa", name="--after"), "Pa")}
         click.echo(json_text(document(law, response) | about))
         return
     before = [] if after is None else [f"the faces have carried {after} before, in place", ""]
     click.echo(folded("\n".join([*heading(choice, mates, kind, given), *before, table(law, response, h)])))
-
-
-def interaction(law: ContactLaw, program: str, unit: str | None) -> str:
-    """The law as a surface interaction of another program."""
-    from faying.export.law_tables import law_tables
-
-    return law_tables(law, program, unit=unit or "m")
 
 
 def conducted(law: ContactLaw, response: Response, pair: ContactPair) -> Array:
@@ -230,21 +227,13 @@ def heading(choice: Choice, mates: Mates | None, kind: LawKind, given: Mapping[s
     if mates is not None:
         lines += wrap(f"mates: {mates.line}", WIDTH)
         fitted = takes_fit(kind, given, mates.faces)
-        fit = mates.faces.fit if fitted else None
-        if fit is not None:
+        if fitted and (fit := mates.faces.fit) is not None:
             rows = [["method", *table.FRACTAL], [fit.method, *table.fractal(asdict(fit))]]
-            lines += [f"  {line}".rstrip() for line in table.text(rows, width=WIDTH - 2).splitlines()]
+            lines += indented(rows, width=WIDTH)
         lines += [line for text in mates.faces.warnings if fitted for line in wrap(f"note: {text}", WIDTH)]
     if choice.reason:
         lines += wrap(f"law: {choice.reason}", WIDTH)
     return [*lines, ""] if lines else []
-
-
-def facts_of(mates: Mates) -> dict[str, Any]:
-    """Numbers of both faces, as a result has them."""
-    from faying.study.keys.surface import Surface
-
-    return Surface(faces=mates.faces, origin=mates.faces.origin).facts()
 
 
 def mates_of(options: dict[str, Any], kind: LawKind, pair: ContactPair) -> Mates | None:

@@ -24,12 +24,9 @@ def command(name: str | None, as_json: bool) -> None:
         return
     lines = ["Laws of rough surfaces, faying.contact", ""] if not name else []
     for entry in entries:
-        lines += [
-            f"{entry['class']} ({entry['name']}), {entry['source']}",
-            f"  holds: {entry['validity']}; takes {entry['takes']}",
-        ]
-        lines += [f"  {n}{mark(p)}: {p['meaning']}; {p['allowed']}" for n, p in entry["parameters"].items()]
-        lines.append("")
+        lines += [f"{entry['class']} ({entry['name']}), {entry['source']}"]
+        lines += [f"  holds: {entry['validity']}; takes {entry['takes']}"]
+        lines += [*(f"  {n}{mark(p)}: {p['meaning']}; {p['allowed']}" for n, p in entry["parameters"].items()), ""]
     if singles:
         lines += ["Models of one asperity, faying.contact.asperity", ""]
         lines += [f"{e['class']} ({e['name']}), {e['source']}\n  holds: {e['validity']}" for e in singles]

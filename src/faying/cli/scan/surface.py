@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from faying.cli.options import NamedPath
-from faying.output.terminal import WIDTH, folded
+from faying.output.terminal import folded, indented
 from faying.surface.estimators.table import METHODS
 from faying.text import finite, json_text
 from faying.units import lengths, show
@@ -62,13 +62,12 @@ def command(
 def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON (SI units; None for what is not finite)."""
     shape = list(scan.heights.shape)
-    spacing = list(scan.spacing) if len(shape) == 2 else [scan.spacing]
-    size = list(scan.size) if len(shape) == 2 else [scan.length]
+    areal = len(shape) == 2
     out = {
         "file": scan.source,
         "points": shape,
-        "spacing": spacing,
-        "size": size,
+        "spacing": list(scan.spacing) if areal else [scan.spacing],
+        "size": list(scan.size) if areal else [scan.length],
         "instrument": asdict(scan.instrument),
         "missing": ready.missing,
         "spikes": ready.spikes,
@@ -93,11 +92,7 @@ def table(document: dict[str, Any]) -> str:
 
     points, size = document["points"], document["size"]
     areal = len(points) == 2
-    shown = (
-        f"{points[1]} x {points[0]} points, {m(size[0])} x {m(size[1])}"
-        if areal
-        else f"{points[0]} points, {m(size[0])}"
-    )
+    shown = f"{' x '.join(map(str, points[::-1]))} points, {' x '.join(map(m, size))}"
     step = " x ".join(m(s) for s in document["spacing"])
     rough = document["roughness"]
     q, a, z, slope = ("Sq", "Sa", "Sz", "Sdq") if areal else ("Rq", "Ra", "Rz", "Rdq")
@@ -119,7 +114,6 @@ def table(document: dict[str, Any]) -> str:
         words += [f"  {name}: {word}" for word in fit["warnings"]]
     convention = next((f["convention"] for f in document["fits"].values() if "error" not in f), "")
     if convention:
-        lines += [f"  {line}".rstrip() for line in tables.text(rows, width=WIDTH - 2).splitlines()]
-        lines += ["", f"  {convention}"]
+        lines += [*indented(rows), "", f"  {convention}"]
     lines += words
     return folded("\n".join(lines))
