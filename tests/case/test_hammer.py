@@ -17,6 +17,7 @@ from faying.case.case import build
 from faying.case.response import LoadedStructure, poor
 from faying.cli import main
 from faying.export import universal
+from faying.joint.modal import Vibration
 from faying.joint.tighten import tighten
 from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes
@@ -54,9 +55,8 @@ def solved(plan):
     mass = structure.dynamic_matrices[1]
     modes = lowest_modes(stiffness, mass, 30, shift_frequency=structure.shift_frequency)
     damped = damped_modes(modes, stiffness, mass, loss, rigid=6, count=18)
-    return LoadedStructure(
-        study=coarse, structure=structure, modes=modes, damped=damped, stiffness=stiffness, mass=mass, loss=loss
-    )
+    found = Vibration(modes=modes, damped=damped, stiffness=stiffness, loss=loss)
+    return LoadedStructure(study=coarse, structure=structure, found=found)
 
 
 @pytest.mark.slow
@@ -69,8 +69,9 @@ def test_full_response_answers_the_full_equations(solved):
     lines = np.array([700.0, 9800.0, 13000.0])
     full, _ = solved.at_test(lines, outputs, inputs)
     push, read = solved._columns(*inputs), solved._columns(*outputs)
+    mass = solved.structure.dynamic_matrices[1]
     for k, f in enumerate(lines):
-        matrix = (solved.stiffness + 1j * solved.loss - (2 * np.pi * f) ** 2 * solved.mass).tocsc()
+        matrix = (solved.found.stiffness + 1j * solved.found.loss - (2 * np.pi * f) ** 2 * mass).tocsc()
         direct = read.T @ splu(matrix).solve(push.astype(complex))
         assert np.linalg.norm(full.receptance[:, :, k] - direct) < 2e-3 * np.linalg.norm(direct)
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from faying.bolt.bolt import FittedBolt
+from faying.bolt.solid_bolt import FittedSolidBolt
 from faying.bolt.vdi2230 import embedding_guide
 from faying.case.case import Case, materials_at
 from faying.case.solve import LoadedCase
@@ -40,7 +41,9 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
     paths = LoadPaths.of(structure)
     found: list[Clamping] = []
     for state in states:
-        found.append(_clamped(structure, state, found[-LIKE:]))
+        stiffness, _ = structure.coupled(state.springs)
+        like = np.concatenate([one.motions for one in found[-LIKE:]], axis=1) if found else None
+        found.append(clamping(structure, stiffness, state.modes, state.springs, like=like))
     bolt, members = (np.stack([getattr(c, name) for c in found]) for name in ("bolt", "members"))
     forces = np.array([s.preload.bolt_forces for s in states])
     motion = np.stack([_modal_forces(structure, one) for one in shapes])
@@ -56,19 +59,13 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
         modal_force=motion,
         modal_force_by_acceleration=motion / omega[:, :, None] ** 2,
         proof_share=forces / [NAN if b.bolt.fastener is None else b.bolt.fastener.proof_load for b in bolts],
-        seat_pressure=forces / [least_seat_area(structure, one) for one in structure.fitted_bolts],
-        seat_limit=np.array([_limit(structure, index) for index in range(len(bolts))]),
+        seat_pressure=forces / [least_seat_area(structure, one) for one in bolts],
+        seat_limit=np.array([_limit(structure, one) for one in bolts]),
         embedding=embedding,
         embedding_loss=_embedding_of(structure, found, embedding) / (bolt + members),
         embedding_guide=guide,
         embedding_guide_loss=guide / (bolt + members),
     )
-
-
-def _clamped(structure: Structure, state: LoadedCase, before: Sequence[Clamping]) -> Clamping:
-    stiffness, _ = structure.coupled(state.springs)
-    like = np.concatenate([one.motions for one in before], axis=1) if before else None
-    return clamping(structure, stiffness, state.modes, state.springs, like=like)
 
 
 def _modal_forces(structure: Structure, shapes: Array) -> Array:
@@ -79,9 +76,8 @@ def _modal_forces(structure: Structure, shapes: Array) -> Array:
     return np.asarray(np.where(rigid, forces, NAN) / most[:, None])
 
 
-def _limit(structure: Structure, index: int) -> float:
+def _limit(structure: Structure, fitted: FittedBolt | FittedSolidBolt) -> float:
     """The pressure [Pa] that the softer of a bolt's seats bears; NaN for a meshed bolt, or where one is not known."""
-    fitted = structure.fitted_bolts[index]
     if not isinstance(fitted, FittedBolt):
         return NAN
     limits = [seat_limit(structure, face) for face in fitted.bolt.faces]

@@ -45,13 +45,11 @@ class WaveBand:
 
     def fields(self, loads: Array) -> dict[str, Any]:
         """Fields of the result; loads: preloads of the first bolt [N]."""
-        slopes = None
-        if len(loads) > 1:
-            slopes = np.stack([preload_slope(values, loads) for values in self.frequencies])
+        slopes = np.stack([preload_slope(values, loads) for values in self.frequencies])
         return {
             "wave_seeds": np.array(self.seeds),
             "wave_frequencies": self.frequencies,
-            "wave_slopes": slopes,
+            "wave_slopes": slopes if len(loads) > 1 else None,
             "wave_rms": self.rms,
             "wave_lengths": self.ends,
         }
@@ -98,11 +96,8 @@ class Draws:
 
     def gaps(self, case: Case, seed: int) -> list[Array]:
         """Gap of each joint [m] (q,) in one draw."""
-        joints = case.structure.joints
-        return [
-            joint.interface.gap if waves is None else waves.gap(seed)
-            for joint, waves in zip(joints, self.wavy, strict=True)
-        ]
+        pairs = zip(case.structure.joints, self.wavy, strict=True)
+        return [joint.interface.gap if waves is None else waves.gap(seed) for joint, waves in pairs]
 
     def band(self, states: Sequence[LoadedCase], found: Sequence[Array | NotConverged]) -> WaveBand | None:
         """The frequencies of all draws that have an answer, from those of `drawn` [Hz] (loads, m).

@@ -85,11 +85,8 @@ class LevelCurves(Summary):
         axes = axes_of(ax, 2, width=COLUMN, height=2.9)
         count = min(self.frequencies.shape[1], MAX_CURVES)
         for mode in range(count):
-            look: dict[str, Any] = {
-                "color": colour(mode),
-                "ls": "-" if mode < len(COLOURS) else "--",
-                "label": f"mode {mode + 1}",
-            }
+            line = "-" if mode < len(COLOURS) else "--"
+            look: dict[str, Any] = {"color": colour(mode), "ls": line, "label": f"mode {mode + 1}"}
             axes[0].plot(self.levels, 100 * (self.frequencies[:, mode] / self.frequencies[0, mode] - 1), **look)
             axes[1].plot(self.levels, 100 * self.damping[:, mode], **look)
         axes[0].set_ylabel("change of frequency [%]")
@@ -188,8 +185,7 @@ def level_curves(
         doi:10.1115/1.3644075.
     """
     study = Study.read_bolted(study)
-    asked = {"amplitude": amplitude, "rest_damping": rest_damping}
-    choice = chosen(study, friction, asked)
+    choice = chosen(study, friction, {"amplitude": amplitude, "rest_damping": rest_damping})
     if choice.rest_damping == "law":
         raise InputError('rest_damping = "law" is for harmonic balance; give a number here, such as 0.001')
     (mu,) = friction_of(study, replace(choice, friction=choice.friction[:1]))

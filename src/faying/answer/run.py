@@ -1,7 +1,7 @@
 """From a study to its result."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,7 @@ from faying.notes import Note
 from faying.numerics.follow import between_by_rank
 from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
+from faying.result.run_record import DampedLevels
 from faying.result.vibration import VibrationResponse
 from faying.service.vibration import vibrations_of
 from faying.study.keys.varied import number_of
@@ -38,7 +39,6 @@ from faying.study.study import Study
 from faying.text import listed
 from faying.typing import Array, Index
 
-LEVEL_FIELDS = ("frequencies", "damping", "low", "high", "slip", "error")
 NOT_ZERO = 1e-3  # of the first frequency: a rigid motion above it has cost 1e-6 of that mode's eigenvalue, and is noted
 
 
@@ -92,35 +92,21 @@ def run(
     if study.joints:
         progress.begin("modes free and bonded")
     ends, notes = bounds(case)
-    notes = [*notes, *findings(case, states), *more, *bolt_notes]
+    notes = [*notes, *falling(case, states), *against_exact_contact(case, states[0]), *more, *bolt_notes]
     notes += [note for one in vibrations for note in one.notes]
-    result = replace(
-        collect(case, states, shapes, ends, notes, alternatives), bolt_numbers=bolts, vibrations=tuple(vibrations)
-    )
-    if band is not None:
-        result = replace(result, **band.fields(case.loads))
+    found = {} if band is None else band.fields(case.loads)
     if interval is not None:
-        interval = interval.between(*ends)
-        result = replace(
-            result,
-            interval_sources=interval.sources,
-            interval_best=interval.best,
-            interval_low=interval.low,
-            interval_high=interval.high,
-            interval_offsets=interval.offsets,
-            mesh_error=None if mesh is None else mesh.total,
-        )
+        interval, names = interval.between(*ends), ("sources", "best", "low", "high", "offsets")
+        found |= {f"interval_{name}": getattr(interval, name) for name in names}
+        found["mesh_error"] = None if mesh is None else mesh.total
+    result = collect(case, states, shapes, ends, notes, alternatives)
+    result = replace(result, bolt_numbers=bolts, vibrations=tuple(vibrations), **found)
     if study.backbone is None:
         return result
     progress.begin(f"mode {study.backbone.mode} over amplitude")
     curves = backbones_of(case, study.backbone)
     every = (*result.notes, *(note for curve in curves for note in curve.notes))
     return replace(result, backbones=curves, notes=tuple(dict.fromkeys(every)))
-
-
-def findings(case: Case, states: Sequence[LoadedCase]) -> list[Note]:
-    """What the states say of the laws and the joint, beyond where a law ends."""
-    return [*falling(case, states), *against_exact_contact(case, states[0])]
 
 
 def stages(study: Study) -> list[str]:
@@ -163,6 +149,7 @@ def collect(
     if comparison is not None and alternatives:
         comparison = replace(comparison, alternatives=np.stack([_predicted(b, comparison) for b in alternatives]))
     lossless = not structure.predicts_loss
+    carried = np.array([one.carried for one in study.preloads])
     rigid = np.max([s.modes.frequencies[: case.rigid_count] for s in states], axis=0)
     first = states[0].modes.frequencies[case.rigid_count]
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
@@ -173,14 +160,14 @@ def collect(
     result = Result(
         title=study.title,
         loads=case.loads,
-        carried=_carried(study),
+        carried=carried if np.any(carried) else None,
         settled=study.is_settled,
         free=bounds[0],
         bonded=bounds[1],
         rigid=rigid,
         mac=with_first,
         **_at_loads(states, lossless, bounds),
-        **_at_levels(case, states),
+        **_at_levels(states),
         **_bonded_above_range(states, lossless),
         **_at_points(states),
         **_on_faces(structure, states),
@@ -210,22 +197,11 @@ def collect(
     return replace(result, hammer=case.hammer.compared(result, full))
 
 
-def _carried(study: Study) -> Array | None:
-    """Greatest preload [N] before each; None where all are first loading."""
-    carried = np.array([one.carried for one in study.preloads])
-    return carried if np.any(carried) else None
-
-
 def _bolts(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Array]) -> tuple[BoltNumbers | None, list[Note]]:
     try:
         return bolt_numbers(case, states, shapes), []
     except NotConverged as fault:
         return None, [Note(code="bolt-numbers", text=f"no compliance and load factor of the bolts: {fault}")]
-
-
-def _stacked(rows: Sequence[Array | None]) -> Array | None:
-    kept = [row for row in rows if row is not None]
-    return np.stack(kept) if len(kept) == len(rows) else None
 
 
 def _predicted(other: Alternative, comparison: MeasuredComparison) -> Array:
@@ -244,13 +220,16 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: Bounds) -> d
     The ends of the range of a law lie between the frequencies of free and of bonded faces, as stiffness raises each of
     them: where the basis of the ends misses that, the bound is the end.
     """
-    low, high = (_stacked(rows) for rows in zip(*(s.law_range for s in states), strict=True))
+    ranges = [(low, high) for low, high in (s.law_range for s in states) if low is not None and high is not None]
+    ends: list[Array | None] = [None, None]
+    if len(ranges) == len(states) and bounds[0] is not None:
+        ends = [between_by_rank(np.stack(rows), *bounds) for rows in zip(*ranges, strict=True)]
     return {
         "frequencies": np.stack([s.damped.frequencies for s in states]),
         "loss_factors": np.stack([np.where(lossless, np.nan, s.damped.loss_factors) for s in states]),
         "loss_error": np.stack([s.damped.error for s in states]),
-        "low": None if low is None or bounds[0] is None else between_by_rank(low, *bounds),
-        "high": None if high is None or bounds[1] is None else between_by_rank(high, *bounds),
+        "low": ends[0],
+        "high": ends[1],
         "outside_share": np.array([s.outside_share for s in states]),
         "above_range_share": np.array([s.above_range_share for s in states]),
         "bolt_forces": np.array([s.preload.bolt_forces for s in states]),
@@ -259,13 +238,14 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: Bounds) -> d
     }
 
 
-def _at_levels(case: Case, states: Sequence[LoadedCase]) -> dict[str, Any]:
+def _at_levels(states: Sequence[LoadedCase]) -> dict[str, Any]:
     """Fields of the result that have a row for each level of acceleration; none where there are none."""
     found = [one for state in states if (one := state.levels) is not None]
     if len(found) < len(states):
         return {}
-    stacked = {f"level_{name}": np.stack([getattr(one, name) for one in found]) for name in LEVEL_FIELDS}
-    return {"levels": np.array(case.study.modes.levels), **stacked}
+    names = [one.name for one in fields(DampedLevels) if one.name != "levels"]
+    stacked = {f"level_{name}": np.stack([getattr(one, name) for one in found]) for name in names}
+    return {"levels": found[0].levels, **stacked}
 
 
 def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[LoadedCase]) -> dict[str, Any]:
@@ -287,6 +267,7 @@ def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[Loa
 def _made_of(structure: Structure) -> dict[str, Any]:
     """Fields of the result that say what the structure is made of."""
     bolts = structure.fitted_bolts
+    extents = [bolt.extent if isinstance(bolt, FittedBolt) else (np.nan, np.nan) for bolt in bolts]
     return {
         "parts": tuple(structure.mesh.parts),
         "part_masses": structure.part_masses,
@@ -295,9 +276,7 @@ def _made_of(structure: Structure) -> dict[str, Any]:
         "masses": structure.masses,
         "bolt_seats": np.array([bolt.seats for bolt in bolts]).reshape(-1, 2, 3),
         "bolt_diameters": np.array([bolt.bolt.diameter or np.nan for bolt in bolts]),
-        "bolt_extents": np.array(
-            [bolt.extent if isinstance(bolt, FittedBolt) else (np.nan, np.nan) for bolt in bolts]
-        ).reshape(-1, 2),
+        "bolt_extents": np.array(extents).reshape(-1, 2),
     }
 
 
@@ -329,8 +308,6 @@ def _stress(structure: Structure, states: Sequence[LoadedCase], nodes: Index) ->
 
 
 def _on_faces(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any]:
-    """Gap and slip at the points of the joints' springs."""
-
     def at_springs(k: int, values: Array) -> Array:
         joint, springs = structure.joints[k], states[0].springs[k]
         return joint.interface.to_nodes(springs.interface, values) if joint.per_node else values

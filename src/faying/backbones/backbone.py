@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any, Literal, overload
 
@@ -67,10 +69,7 @@ class CurveStore(PartFile):
     def points(self, curve: int) -> list[EpmcPoint]:
         """The points of a curve that were kept, in rising amplitude, up to the first that is damaged."""
         out: list[EpmcPoint] = []
-        while (found := self.arrays(_name(curve, len(out)))) is not None:
-            point = _point(found)
-            if point is None:
-                break
+        while (point := _point(self.arrays(_name(curve, len(out))))) is not None:
             out.append(point)
         return out
 
@@ -90,7 +89,10 @@ def _name(curve: int, number: int) -> str:
     return f"curve-{curve}-{number:04d}"
 
 
-def _point(found: dict[str, Any]) -> EpmcPoint | None:
+def _point(found: dict[str, Any] | None) -> EpmcPoint | None:
+    """A point that was kept; None where it is missing or damaged."""
+    if found is None:
+        return None
     given: dict[str, Any] = {}
     try:
         for f in fields(EpmcPoint):
@@ -364,21 +366,14 @@ def _curves(
         bases[0].begin(lambda text: progress.stage(text, 0.5))
         for other in bases[1:]:
             other.take_modes()
-        for one in prepared:
-            for friction in frictions:
-                one.train(friction, progress)
+        for one, friction in product(prepared, frictions):
+            one.train(friction, progress)
         store.keep_basis(bases[0].basis.vectors)
     out = []
-    for one in prepared:
-        for friction in frictions:
-            number = progress.curve
-
-            def keep(count: int, point: EpmcPoint, number: int = number) -> None:
-                store.keep(number, count, point)
-
-            found = one.curve(friction, store.points(number), keep, progress)
-            out.append(collected(found))
-            progress.curve += 1
+    for number, (one, friction) in enumerate(product(prepared, frictions)):
+        progress.curve = number
+        found = one.curve(friction, store.points(number), partial(store.keep, number), progress)
+        out.append(collected(found))
     return out
 
 
@@ -431,7 +426,6 @@ def _modes(case: Case, springs: Sequence[Springs[Interface]], mode: int) -> Mode
 
 
 def _last(case: Case, choice: BackboneChoice) -> "_Prepared":
-    """A case under its last load, with an empty basis."""
     last = len(case.study.loads) - 1
     (basis,) = _bases([(case, last)], choice, _Progress(None, 1))
     return _Prepared(case=case, choice=choice, load=case.study.loads[last], basis=basis)
@@ -486,19 +480,15 @@ class _Prepared:
         return node, direction, functional
 
     def rest_damping(self) -> float:
-        """Ratio to critical [-] that is added."""
+        """Ratio to critical [-] that is added: as given, or half of the loss factor that the laws give at rest."""
         if self.choice.rest_damping != "law":
             return float(self.choice.rest_damping)
-        if not self.case.structure.predicts_loss:
-            raise InputError('rest_damping = "law": no law of this study predicts a loss; give a number such as 0.001')
-        return self.law_damping()
-
-    def law_damping(self) -> float:
-        """Half of the loss factor [-] that the laws give the mode at rest."""
         basis, structure = self.basis, self.case.structure
+        if not structure.predicts_loss:
+            raise InputError('rest_damping = "law": no law of this study predicts a loss; give a number such as 0.001')
         stiffness, loss = structure.coupled(basis.springs)
-        own = basis.modes_here()
-        found = damped_modes(own, stiffness, basis.mass, loss, rigid=structure.rigid_count, count=basis.mode)
+        own, rigid = basis.modes_here(), structure.rigid_count
+        found = damped_modes(own, stiffness, basis.mass, loss, rigid=rigid, count=basis.mode)
         return float(found.damping_ratios[basis.mode - 1])
 
     def curve(

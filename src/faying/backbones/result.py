@@ -155,19 +155,16 @@ def _bounds_at(epmc: Epmc, last: EpmcPoint) -> ErrorBounds:
         damping = other.damping / last.damping - 1 if last.damping > NOTHING else float("nan")
         return other.frequency / last.frequency - 1, damping
 
-    nothing = float("nan"), float("nan")
-    harmonics = change(lambda: replace(epmc, harmonics=1)) if epmc.harmonics > 1 else nothing
-    samples = change(lambda: replace(epmc, samples=epmc.samples // 2))
-    halved = change(lambda: replace(epmc, model=epmc.model.halved()))
-    return ErrorBounds(
-        acceleration=last.level,
-        harmonics_frequency=harmonics[0],
-        harmonics_damping=harmonics[1],
-        points_frequency=halved[0],
-        points_damping=halved[1],
-        samples_frequency=samples[0],
-        samples_damping=samples[1],
-    )
+    coarser: dict[str, Callable[[], Epmc]] = {
+        "samples": lambda: replace(epmc, samples=epmc.samples // 2),
+        "points": lambda: replace(epmc, model=epmc.model.halved()),
+    }
+    if epmc.harmonics > 1:
+        coarser["harmonics"] = lambda: replace(epmc, harmonics=1)
+    found: dict[str, float] = {}
+    for name, make in coarser.items():
+        found[f"{name}_frequency"], found[f"{name}_damping"] = change(make)
+    return ErrorBounds(acceleration=last.level, **found)
 
 
 def _quasi_static_check(curve: BackboneCurve, points: Sequence[EpmcPoint]) -> QuasiStaticCheck | None:

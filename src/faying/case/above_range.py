@@ -1,6 +1,6 @@
 """What lies beyond the end of a law: stiffness is held there in one answer and the faces bonded in the other."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,7 +61,7 @@ def bonded_above_range(
         kind=study.modes.damping,
         tolerance=EXACT,
     )
-    notes = _notes(case, load, springs, past, found.frequencies / at_end.frequencies - 1)
+    notes = tuple(_notes(case, load, springs, past, found.frequencies / at_end.frequencies - 1))
     return AboveRange(frequencies=found.frequencies, loss_factors=found.loss_factors, notes=notes)
 
 
@@ -85,36 +85,32 @@ def _bonded(springs: Springs[Interface], past: Mask, parts: float) -> Springs[In
 
 def _notes(
     case: Case, load: float, springs: Sequence[Springs[Interface]], past: Sequence[Mask], change: Array
-) -> tuple[Note, ...]:
+) -> Iterator[Note]:
     kilo = load_text(load)
     worst = int(np.argmax(np.abs(change)))
-    shown = abs(change[worst]) >= MIN_PRINTED_CHANGE
-    out = []
+    effect = f"moves mode {worst + 1} most, by {change[worst]:+.2%}"
+    if abs(change[worst]) < MIN_PRINTED_CHANGE:
+        effect = f"moves no mode by {MIN_PRINTED_CHANGE:.2%}"
     for number, (joint, s, mask) in enumerate(zip(case.structure.joints, springs, past, strict=True)):
         if not np.any(mask):
             continue
         model, weights = joint.law.model, s.interface.weights
         share = float(weights @ mask / weights.sum())
-        where = f"{joint.name}, {kilo}: on {percent(share)} of the joint the pressure exceeds the "
-        where += f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends with this surface"
-        effect = (
-            f"moves mode {worst + 1} most, by {change[worst]:+.2%}"
-            if shown
-            else f"moves no mode by {MIN_PRINTED_CHANGE:.2%}"
+        text = (
+            f"{joint.name}, {kilo}: on {percent(share)} of the joint the pressure exceeds the "
+            f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends with this surface; stiffness stays "
+            f"constant there; bonding these points instead {effect}"
         )
-        text = f"{where}; stiffness stays constant there; bonding these points instead {effect}"
-        out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
+        yield Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text)
         strong = np.flatnonzero(np.abs(change) > MATTERS)
         if len(strong):
             which = f"mode{'s' * (len(strong) > 1)} {', '.join(str(k + 1) for k in strong)}"
             text = (
-                f"{joint.name}, {kilo}: {model.name} cannot answer for {which}: with constant stiffness above "
-                f"its end, or bonded there, "
-                f"the frequencies differ by up to {np.abs(change).max():.1%}; take both as bounds. "
+                f"{joint.name}, {kilo}: {model.name} cannot answer for {which}: with constant stiffness above its end, "
+                f"or bonded there, the frequencies differ by up to {np.abs(change).max():.1%}; take both as bounds. "
                 f"{_others(case, number, float(s.pressure.max()))}"
             )
-            out.append(Note(code="beyond-law-matters", joint=joint.name, load=load, share=share, text=text))
-    return tuple(out)
+            yield Note(code="beyond-law-matters", joint=joint.name, load=load, share=share, text=text)
 
 
 def _others(case: Case, number: int, pressure: float) -> str:
@@ -134,9 +130,7 @@ def _others(case: Case, number: int, pressure: float) -> str:
             continue
         if reach >= pressure:
             found.append((reach, label.lower()))
+    if not found:
+        return "No law on this surface does"
     listed = ", ".join(f"{label} to {reach / 1e9:.3g} GPa" for reach, label in sorted(found, reverse=True))
-    return (
-        f"On this surface these laws reach {pressure / 1e6:.3g} MPa: {listed}"
-        if found
-        else "No law on this surface does"
-    )
+    return f"On this surface these laws reach {pressure / 1e6:.3g} MPa: {listed}"

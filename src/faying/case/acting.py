@@ -43,10 +43,7 @@ class Acting:
             force=self.force + other.force,
             moved=self.moved + other.moved,
             longer=self.longer + other.longer,
-            strains={
-                part: self.strains.get(part, 0.0) + other.strains.get(part, 0.0)
-                for part in dict.fromkeys((*self.strains, *other.strains))
-            },
+            strains=dict(self.strains) | {part: self.strains.get(part, 0.0) + e for part, e in other.strains.items()},
         )
 
     def times(self, factor: float) -> "Acting":

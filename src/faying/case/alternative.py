@@ -59,15 +59,9 @@ def solve_alternative(case: Case, choice: AlternativeChoice, engine: str, progre
 
 def study_with(study: Study, choice: AlternativeChoice) -> Study:
     """The study with another law, surface or form on all joints."""
-    joints = tuple(
-        replace(
-            joint,
-            law=choice.law or joint.law,
-            surface=choice.surface or joint.surface,
-            form=choice.form or joint.form,
-        )
-        for joint in study.joints
-    )
+    given = {name: getattr(choice, name) for name in ("law", "surface", "form")}
+    own = {name: value for name, value in given.items() if value is not None}
+    joints = tuple(replace(joint, **own) for joint in study.joints)
     return replace(study, joints=joints, response=None, hammer=None)
 
 
@@ -89,29 +83,20 @@ def alternative_fields(alternatives: Sequence[Alternative], loads: int, modes: i
     """Fields of the result for the other laws, NaN where one has no answer; none without any."""
     if not alternatives:
         return {}
-    nothing = np.full((loads, modes), np.nan)
-    alone = np.full(loads, np.nan)
-    rows: dict[str, list[Any]] = {
-        "alternative_frequencies": [],
-        "alternative_loss_factors": [],
-        "alternative_above_range_frequencies": [],
-        "alternative_outside_share": [],
-        "alternative_above_range_share": [],
-        "alternative_reach": [],
-    }
+    nothing, alone = np.full((loads, modes), np.nan), np.full(loads, np.nan)
+    rows: dict[str, list[Any]] = {}
     for other in alternatives:
         joints, states = () if other.case is None else other.case.structure.joints, other.states
         lossless = other.case is None or not other.case.structure.predicts_loss
-        found = [
-            np.stack([s.damped.frequencies for s in states]) if states else nothing,
-            nothing if lossless else np.stack([s.damped.loss_factors for s in states]),
-            np.stack([s.bonded_frequencies for s in states]) if states else nothing,
-            np.array([s.outside_share for s in states]) if states else alone,
-            np.array([s.above_range_share for s in states]) if states else alone,
-            min((joint.law.model.greatest_pressure for joint in joints), default=np.nan),
-        ]
-        for values, one in zip(rows.values(), found, strict=True):
-            values.append(one)
-    return {"alternatives": tuple(b.name for b in alternatives)} | {
-        name: np.stack(values) for name, values in rows.items()
-    }
+        found = {
+            "frequencies": np.stack([s.damped.frequencies for s in states]) if states else nothing,
+            "loss_factors": nothing if lossless else np.stack([s.damped.loss_factors for s in states]),
+            "above_range_frequencies": np.stack([s.bonded_frequencies for s in states]) if states else nothing,
+            "outside_share": np.array([s.outside_share for s in states]) if states else alone,
+            "above_range_share": np.array([s.above_range_share for s in states]) if states else alone,
+            "reach": min((joint.law.model.greatest_pressure for joint in joints), default=np.nan),
+        }
+        for name, value in found.items():
+            rows.setdefault(f"alternative_{name}", []).append(value)
+    stacked = {name: np.stack(values) for name, values in rows.items()}
+    return {"alternatives": tuple(other.name for other in alternatives), **stacked}

@@ -42,16 +42,15 @@ def _bonded(case: Case) -> tuple[Array, list[Note]]:
     structure = case.structure
     merge = structure.bonded()
     if merge is None:
-        apart = [
-            joint.name
-            for joint in structure.joints
-            if bond(structure.mesh, [joint.faces], [joint.interface.area]) is None
-        ]
+        pairs = {joint.name: bond(structure.mesh, [joint.faces], [joint.interface.area]) for joint in structure.joints}
+        apart = ", ".join(name for name, found in pairs.items() if found is None)
         text = (
-            f"the faces of {', '.join(apart)} do not match node for node: in the bonded modes they are tied on average "
+            f"the faces of {apart} do not match node for node: in the bonded modes they are tied on average "
             "over each element, which may lower a frequency by some 0.3 %"
         )
-        return _tied(case), [Note(code="bonded-by-ties", text=text)]
+        K, M = structure.dynamic_matrices
+        tied = modes_with(case.modal, K + structure.tied(), M, rigid=structure.rigid)
+        return tied.frequencies[_elastic(case)], [Note(code="bonded-by-ties", text=text)]
     if len(structure.fixed) or isinstance(structure.solver(case.study.modes.solver), PartByPart):
         return _extrapolated(case), []
     return _merged(case, merge), []
@@ -64,12 +63,6 @@ def _merged(case: Case, merge: Any) -> Array:
     share = np.asarray(merge.sum(axis=0)).ravel()
     rigid = (merge.T @ structure.rigid) / share[:, None]
     return modes_with(case.modal, K, M, rigid=rigid).frequencies[_elastic(case)]
-
-
-def _tied(case: Case) -> Array:
-    """Faces that do not match, as welded ones of a study are."""
-    K, M = case.structure.dynamic_matrices
-    return modes_with(case.modal, K + case.structure.tied(), M, rigid=case.structure.rigid).frequencies[_elastic(case)]
 
 
 def _extrapolated(case: Case) -> Array:

@@ -98,13 +98,11 @@ class Case:
         tables = [file for file in study.files if file != study.geometry.file]  # readers of meshes look for themselves
         ends = [text for file in tables for text in end_of(file)]
         notes += [Note(code="file-end", text=text) for text in ends if text not in known]
-        size = structure.mesh.size
-        if not SIZES[0] <= size <= SIZES[1]:
+        if not SIZES[0] <= (size := structure.mesh.size) <= SIZES[1]:
             text = (
-                f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its "
-                "geometry is wrong"
+                f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its geometry"
             )
-            notes.append(Note(code="size", text=text))
+            notes.append(Note(code="size", text=f"{text} is wrong"))
         notes += (*law_reasons(structure, surfaces), *structure.notes)
         notes += (*material_notes(structure), *bolt_notes(structure, study.bolt_forces))
         return cls(
@@ -190,14 +188,11 @@ def surfaces_of(study: Study, read: Read | None = None) -> tuple[Surface, ...]:
     out = []
     for joint in study.joints:
         choice = joint.surface or study.surface
-        if choice is None:
-            if study.law_of(joint).needs_surface:
-                raise InputError(f"joint {joint.name!r} has no surface; add [surface] to the study or to the joint")
-            out.append(NO_SURFACE)
-            continue
-        if choice not in read:
+        if choice is None and study.law_of(joint).needs_surface:
+            raise InputError(f"joint {joint.name!r} has no surface; add [surface] to the study or to the joint")
+        if choice is not None and choice not in read:
             read[choice] = choice.read()
-        out.append(read[choice])
+        out.append(NO_SURFACE if choice is None else read[choice])
     return tuple(out)
 
 
@@ -399,9 +394,8 @@ def structure_of(
 
 def interface_of(study: Study, mesh: Mesh, joint: JointChoice, surface: Surface) -> tuple[Interface, list[Note]]:
     """How the faces of a joint meet, with their form; and notes on a gap that was closed and on waves."""
-    met, notes = snapped(
-        join(mesh, *joint.faces, search_distance=joint.search_distance), study.geometry.snap, joint.name
-    )
+    met = join(mesh, *joint.faces, search_distance=joint.search_distance)
+    met, notes = snapped(met, study.geometry.snap, joint.name)
     if joint.form is None:
         return met, notes
     formed, more = with_form(met, mesh, joint.faces, joint.form.with_scan(surface.waves), joint.name)

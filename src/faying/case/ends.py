@@ -36,10 +36,9 @@ def ends_of(case: Case, preload: PreloadState, engine: Engine, modes: Modes) -> 
         out["scan"] = at("low"), at("high")
     if case.study.modes.intervals and not any(joint.per_node for joint in joints):
         springs = case.structure.springs(preload.pressures)
-        out["contact"] = (
-            engine.frequencies([half_of(one, 0) for one in springs], modes, one_way=False),
-            engine.frequencies([half_of(one, 1) for one in springs], modes, one_way=False),
-        )
+        halves = ([half_of(one, which) for one in springs] for which in (0, 1))
+        first, second = (engine.frequencies(half, modes, one_way=False) for half in halves)
+        out["contact"] = first, second
     return out
 
 

@@ -44,11 +44,6 @@ class Hammer:
             tested = replace(tested, modes=replace(tested.modes, source=choice.source))
         return cls(choice=choice, tested=tested, transform=tested.transform(choice.frame) if choice.frame else None)
 
-    @property
-    def has_frf(self) -> bool:
-        """Whether the test holds FRFs beside its modes."""
-        return self.tested.frf is not None
-
     def points(self, structure: Structure) -> PointMap:
         """Where the test's points lie on the outline. InputError where none of them does."""
         nodes, triangles = structure.outline()

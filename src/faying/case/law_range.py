@@ -45,8 +45,7 @@ def of_joints(study: Study) -> list[Distribution | None]:
         if len(kinds) == 1:
             soft = kinds == {True}
         elif None not in parts:
-            rough, other = (study.materials[study.parts[str(part)]] for part in parts)
-            soft = is_soft(rough, other)
+            soft = is_soft(*(study.materials[study.parts[str(part)]] for part in parts))
         else:
             mesh = mesh or checked_mesh(study)
             soft = is_soft(*materials_at(study, mesh, joint))

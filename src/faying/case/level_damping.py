@@ -1,7 +1,6 @@
 """Damping and frequency of every mode at levels of acceleration, with what is not known of friction and of rest."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from faying.joint.modal import Vibration
 from faying.microslip.levels import SPRINGS, AtLevels, cut_laws, level_basis, level_model
 from faying.microslip.microslip import Microslip
 from faying.notes import Note
+from faying.result.run_record import DampedLevels
 from faying.typing import Array
 
 # coefficient of friction of faces of which nothing is said: 5 %, median and 95 % of a lognormal. Handbooks have 0.1 to
@@ -26,26 +26,7 @@ SLIGHT = 0.1  # of the spread at rest: slip below it moves the low end by 0.005 
 SPRINGS_AT_ENDS = 12
 
 
-@dataclass(frozen=True, kw_only=True)
-class LevelDamping:
-    """Modes (m,) at levels (l,), of one load.
-
-    Args:
-        frequencies: [Hz] (l, m), at the friction of the study or the median of its prior.
-        damping, low, high: ratio [-] (l, m), of slip and rest together: median, and both ends.
-        slip: of slip alone [-] (l, m), at the median.
-        error: of slip, of the iteration [-] (l, m).
-    """
-
-    frequencies: Array
-    damping: Array
-    low: Array
-    high: Array
-    slip: Array
-    error: Array
-
-
-def level_damping(case: Case, preload: PreloadState, found: Vibration) -> LevelDamping | None:
+def level_damping(case: Case, preload: PreloadState, found: Vibration) -> DampedLevels | None:
     """Damping at the levels of a case under one preload.
 
     Args:
@@ -81,7 +62,8 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> LevelD
         # where the least friction has no answer the greatest damping is not known
         least, most = np.fmin(slip, np.fmin(*ends)), np.maximum(slip, np.maximum(*ends))
     # friction and rest are independent: the squares of their distances add, apart for each side
-    return LevelDamping(
+    return DampedLevels(
+        levels=np.array(choice.levels),
         frequencies=middle.frequencies * moved,
         damping=slip + rest[1],
         low=slip + rest[1] - np.hypot(slip - least, rest[1] - rest[0]),
@@ -117,13 +99,10 @@ def moved_by_loss(structure: BoltedStructure, found: Vibration) -> Array:
 
 def assumed_words(*, friction: bool, rest: bool) -> list[str]:
     """What is assumed of friction and of damping at rest."""
-    words = []
-    if friction:
-        words.append(f"friction {FRICTION[1]:g}, between {FRICTION[0]:g} and {FRICTION[2]:g} (joint.friction gives it)")
-    if rest:
-        low, middle, high = (f"{100 * one:g}" for one in REST)
-        words.append(f"{middle} % at rest, between {low} and {high} %")
-    return words
+    least, usual, most = FRICTION
+    low, middle, high = (f"{100 * one:g}" for one in REST)
+    words = [f"friction {usual:g}, between {least:g} and {most:g} (joint.friction gives it)"] * friction
+    return words + [f"{middle} % at rest, between {low} and {high} %"] * rest
 
 
 def _why_none(case: Case) -> str:
@@ -141,7 +120,7 @@ def _why_none(case: Case) -> str:
     )
 
 
-def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool) -> list[Note]:
+def level_notes(case: Case, found: Sequence[DampedLevels | None], lossless: bool) -> list[Note]:
     """What is assumed of friction and of rest."""
     if not found or not case.study.modes.levels or not case.structure.joints:
         return []
@@ -156,7 +135,7 @@ def level_notes(case: Case, found: Sequence[LevelDamping | None], lossless: bool
     return [*notes, Note(code="level-damping", text=text)]
 
 
-def _unanswered(case: Case, found: Sequence[LevelDamping]) -> list[Note]:
+def _unanswered(case: Case, found: Sequence[DampedLevels]) -> list[Note]:
     """Which modes have no damping, or no upper end of it, at which levels."""
     missing = np.argwhere(np.any([np.isnan(one.high) for one in found], axis=0))
     if not len(missing):

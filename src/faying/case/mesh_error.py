@@ -96,11 +96,10 @@ def mesh_notes(case: Case, found: MeshError | None) -> list[Note]:
     over = [str(k + 1) for k in np.flatnonzero(worst > MESH_NOTED)]
     if not over:
         return []
-    which = (
-        f"all {len(over)} modes" if 1 < len(over) == len(worst) else f"mode{'s' * (len(over) > 1)} {', '.join(over)}"
-    )
-    text = f"the mesh is coarse: {which} may be off by up to "
-    text += f"{100 * worst.max():.2g} %; "
+    which = f"mode{'s' * (len(over) > 1)} {', '.join(over)}"
+    if 1 < len(over) == len(worst):
+        which = f"all {len(over)} modes"
+    text = f"the mesh is coarse: {which} may be off by up to {100 * worst.max():.2g} %; "
     geometry = case.study.geometry
     if geometry.step is None:
         text += "mesh finer in the program that the mesh comes from"

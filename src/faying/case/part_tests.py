@@ -116,9 +116,8 @@ class PartAlone:
         weighed = None if self.test.mass is None else float(np.log(self.test.mass / self.structure.mass))
         ratios = errors = np.zeros(0)
         if len(measured):
-            computed, errors = self.modes(
-                min(MODES_EACH * len(measured) + SPARE_MODES, self.structure.mesh.unknowns // 4)
-            )
+            count = min(MODES_EACH * len(measured) + SPARE_MODES, self.structure.mesh.unknowns // 4)
+            computed, errors = self.modes(count)
             ratios = np.log(measured[:, None] / computed) + errors  # a finer mesh has it lower by its error
             pairs = same_modes(ratios + (weighed or 0.0) / 2, structure, mode)
             ratios, errors = ratios[pairs], errors[pairs[1]]
@@ -192,8 +191,8 @@ class KnownParts:
         """
         structure, mode = offsets["structure"], offsets["mode"]
         by_factor = np.stack([self.strain, -self.kinetic], axis=-1) / 2
-        middle = sum(by @ one.mean for by, one in zip(by_factor, self.factors, strict=True))
-        pairs = zip(by_factor, self.factors, strict=True)
+        pairs = list(zip(by_factor, self.factors, strict=True))
+        middle = sum(by @ one.mean for by, one in pairs)
         variance = sum(np.einsum("lmi,ij,lmj->lm", by, one.covariance, by) for by, one in pairs)
         own = sum((share * one.scatter) ** 2 for share, one in zip(self.strain, self.factors, strict=True))
         rest = np.clip(1 - self.strain.sum(axis=0), 0.0, 1.0)
@@ -206,19 +205,20 @@ class KnownParts:
         """What the test of each part says, and which of its modes the model does not have."""
         for part, one in zip(self.parts, self.factors, strict=True):
             name, (stiffness, mass), sd = part.name, np.exp(one.mean), np.sqrt(np.diag(one.covariance))
-            text = f"part {name!r}, by its own test: stiffness {stiffness:.4f} +- {sd[0]:.4f} and mass {mass:.4f} +- "
-            text += f"{sd[1]:.4f} times that of the model"
-            text += f"; each of {one.count} modes is within {100 * one.scatter:.2g} %" if one.count else ""
-            yield Note(code="part-test", text=f"{text} (standard deviations)")
+            modes = f"; each of {one.count} modes is within {100 * one.scatter:.2g} %" if one.count else ""
+            text = (
+                f"part {name!r}, by its own test: stiffness {stiffness:.4f} +- {sd[0]:.4f} and mass {mass:.4f} +- "
+                f"{sd[1]:.4f} times that of the model{modes} (standard deviations)"
+            )
+            yield Note(code="part-test", text=text)
             look = "look at its geometry, material and units"
             if abs(one.mean[1]) > FARTHEST * DENSITY_SD:
                 yield Note(code="part-mass", text=f"part {name!r} weighs {mass:.3g} times its model; {look}")
-            measured = len(part.measured)
-            if one.count < measured:
+            if one.count < (measured := len(part.measured)):
                 text = (
                     f"part {name!r}: the model has {one.count} of its {measured} measured modes; the others are left "
+                    f"out. Give free modes of the part alone; else {look}"
                 )
-                text += f"out. Give free modes of the part alone; else {look}"
                 yield Note(code="test-modes", text=text)
 
 

@@ -1,18 +1,16 @@
 """Frequency response of a study's structure at one preload, at points of the study or of its hammer test."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from faying.fe.response import ForcedVibration, FrequencyResponse, frequency_response
 from faying.joint.attachments import nearest_node
+from faying.joint.modal import Vibration
 from faying.joint.structure import Structure
 from faying.measured.model import FullResponse
 from faying.notes import Note
 from faying.numerics.constraint import constrain
-from faying.numerics.damped import DampedModes
-from faying.numerics.modes import Modes
 from faying.study.keys.solution import ResponseChoice
 from faying.study.study import Study
 from faying.typing import Array, Complex
@@ -39,11 +37,7 @@ class LoadedStructure:
 
     study: Study
     structure: Structure
-    modes: Modes
-    damped: DampedModes
-    stiffness: Any
-    mass: Any
-    loss: Any
+    found: Vibration
 
     def response(self, choice: ResponseChoice) -> tuple[ResponseAtLoad, list[Note]]:
         """The response that [response] of the study asks for, and a note where its residual is large."""
@@ -85,19 +79,16 @@ class LoadedStructure:
         return full, poor(found.checked, found.error, "at the points of the test")
 
     def _at(
-        self,
-        frequencies: Array,
-        outputs: tuple[Array, Array],
-        inputs: tuple[Array, Array],
-        more: Array | None = None,
+        self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array], more: Array | None = None
     ) -> FrequencyResponse:
         """The response at points, and of what the columns of `more` (unknowns, k) read of a displacement."""
         spec = self.study.response
         eta = 0.0 if spec is None else spec.structural_loss
+        own = self.found
         vibration = ForcedVibration(
-            stiffness=self.stiffness,
-            mass=self.mass,
-            loss=self.loss,
+            stiffness=own.stiffness,
+            mass=self.structure.dynamic_matrices[1],
+            loss=own.loss,
             rigid=self.structure.rigid_count,
             kind=self.study.modes.damping,
             structural_loss=eta,
@@ -106,7 +97,7 @@ class LoadedStructure:
         forces, read = self._columns(*inputs), self._columns(*outputs)
         read = read if more is None else np.concatenate([read, more], axis=1)
         return frequency_response(
-            vibration, self.modes, self.damped, forces=forces, outputs=read, frequencies=frequencies
+            vibration, own.modes, own.damped, forces=forces, outputs=read, frequencies=frequencies
         )
 
     def _columns(self, nodes: Array, axes: Array) -> Array:

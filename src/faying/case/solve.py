@@ -7,7 +7,7 @@ from faying.case.above_range import AboveRange, bonded_above_range
 from faying.case.case import Case, Progress
 from faying.case.ends import Pair, ends_of
 from faying.case.engine import Engine
-from faying.case.level_damping import LevelDamping, level_damping
+from faying.case.level_damping import level_damping
 from faying.case.response import LoadedStructure, ResponseAtLoad
 from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
@@ -20,6 +20,7 @@ from faying.notes import Note
 from faying.numerics.damped import DampedModes
 from faying.numerics.modes import Modes
 from faying.numerics.solve import Released
+from faying.result.run_record import DampedLevels
 from faying.typing import Array, Mask
 
 
@@ -52,7 +53,7 @@ class LoadedCase:
     notes: tuple[Note, ...]
     outside_share: float
     above_range_share: float
-    levels: LevelDamping | None = None
+    levels: DampedLevels | None = None
     ends: Mapping[str, Pair] | None = None
 
     @property
@@ -84,26 +85,17 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     springs = structure.springs(preload.pressures)
     progress.begin(f"modes at {preload_case.name}")
     found = engine.vibrate(springs)
-    modes, damped = found.modes, found.damped
-    loaded = LoadedStructure(
-        study=study,
-        structure=structure,
-        modes=modes,
-        damped=damped,
-        stiffness=found.stiffness,
-        mass=structure.dynamic_matrices[1],
-        loss=found.loss,
-    )
+    loaded = LoadedStructure(study=study, structure=structure, found=found)
     response, test_response, notes = _responses(case, number, loaded, progress)
-    above_range = bonded_above_range(case, load, springs, damped)
+    above_range = bonded_above_range(case, load, springs, found.damped)
     return LoadedCase(
         load=load,
-        ends=ends_of(case, preload, engine, modes) if ranges else None,
+        ends=ends_of(case, preload, engine, found.modes) if ranges else None,
         levels=level_damping(case, preload, found) if ranges else None,
         preload=preload,
         springs=springs,
-        modes=modes,
-        damped=damped,
+        modes=found.modes,
+        damped=found.damped,
         response=response,
         test_response=test_response,
         above_range=above_range,
@@ -136,7 +128,8 @@ def _responses(
         progress.begin(f"frequency response at {study.preloads[number].name}")
         response, more = loaded.response(study.response)
         notes += more
-    if hammer is not None and case.test_points is not None and number == hammer.choice.load and hammer.has_frf:
+    asked = hammer is not None and number == hammer.choice.load and hammer.tested.frf is not None
+    if hammer is not None and case.test_points is not None and asked:
         progress.begin("frequency response at the points of the test")
         test_response, more = hammer.response(loaded, case.test_points)
         notes += more

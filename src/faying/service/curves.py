@@ -5,14 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faying.case.level_damping import (
-    FRICTION,
-    SPRINGS_AT_ENDS,
-    assumes_friction,
-    laws_at,
-    moved_by_loss,
-    rest_damping,
-)
+from faying.case.level_damping import FRICTION, SPRINGS_AT_ENDS, assumes_friction, laws_at, moved_by_loss, rest_damping
 from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
@@ -55,7 +48,12 @@ class CurveSets:
 
     def at_rest(self, end: int) -> tuple[ModeCurve, ...]:
         """The best curves with the damping at rest of an end: 0, 1 or 2."""
-        return tuple(replace(c, rest=float(z)) for c, z in zip(self.best, self.rest[end], strict=True))
+        return _with_rest(self.best, self.rest[end])
+
+
+def _with_rest(curves: Sequence[ModeCurve], rest: Array) -> tuple[ModeCurve, ...]:
+    """Curves with other damping ratios at rest [-] (m,)."""
+    return tuple(replace(curve, rest=float(z)) for curve, z in zip(curves, rest, strict=True))
 
 
 def curve_sets(
@@ -81,16 +79,14 @@ def curve_sets(
     laws = _laws(structure, preload) if slips else {}
     if not laws:
         return CurveSets(best=plain, least=None, most=None, rest=rest)
-    lossless = [replace(c, rest=float(z)) for c, z in zip(plain, rest[0], strict=True)]
-    expected = np.array([need(c) for need, c in zip(needs, lossless, strict=True)])
-    damped = [replace(c, rest=float(z)) for c, z in zip(plain, rest[2], strict=True)]
-    likely = np.array([need(c) for need, c in zip(needs, damped, strict=True)])
+    lossless, damped = _with_rest(plain, rest[0]), _with_rest(plain, rest[2])
+    expected, likely = (
+        np.array([need(c) for need, c in zip(needs, curves, strict=True)]) for curves in (lossless, damped)
+    )
     scale = greatest * speeds**2
     wanted = expected * scale > NOTHING * (expected * scale).max(initial=0.0)
-    levels = [
-        (likely[k] * scale[k] * np.array(BASIS)).tolist() if wanted[k] and likely[k] > 0 else []
-        for k in range(len(scale))
-    ]
+    asked = wanted & (likely > 0)
+    levels = [(x * np.array(BASIS)).tolist() if one else [] for x, one in zip(likely * scale, asked, strict=True)]
     basis = level_basis(structure, preload, found, list(laws.values())[:2], levels)
     laws[FRICTION[1]] = laws_at(structure, preload, FRICTION[1], SPRINGS)
     moved = moved_by_loss(structure, found)
@@ -103,15 +99,10 @@ def curve_sets(
             else (curve, False)
             for k, (curve, need) in enumerate(zip(lossless, needs, strict=True))
         ]
-        sets[mu] = tuple(replace(c, rest=float(z)) for (c, _), z in zip(marched, rest[1], strict=True))
+        sets[mu] = _with_rest([curve for curve, _ in marched], rest[1])
         ended |= {k + 1 for k, (_, stopped) in enumerate(marched) if stopped and mu == FRICTION[1]}
-    return CurveSets(
-        best=sets[FRICTION[1]],
-        least=sets.get(FRICTION[0]),
-        most=sets.get(FRICTION[2]),
-        rest=rest,
-        ended=tuple(sorted(ended)),
-    )
+    least, most = sets.get(FRICTION[0]), sets.get(FRICTION[2])
+    return CurveSets(best=sets[FRICTION[1]], least=least, most=most, rest=rest, ended=tuple(sorted(ended)))
 
 
 def _laws(structure: BoltedStructure, preload: PreloadState) -> dict[float, list[Microslip]]:

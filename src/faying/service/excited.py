@@ -90,6 +90,7 @@ class Excited:
         nodes = _nodes(structure, excitation, shapes[:, rigid:], speeds[rigid:], force[rigid:])
         patches = _patches(structure, springs)
         columns = np.concatenate([shapes, lacking[:, None]], axis=1)
+        along = np.tile(np.array(excitation.direction), len(structure.mesh.points))
         every = _quantities(structure, springs, nodes, patches, columns)
         return cls(
             excitation=excitation,
@@ -100,9 +101,7 @@ class Excited:
             static={name: one[..., -1] for name, one in every.items()},
             nodes=nodes,
             greatest=np.linalg.norm(shapes.reshape(-1, 3, count), axis=1).max(axis=0),
-            mass=float(-input_force @ np.tile(np.array(excitation.direction), len(structure.mesh.points)))
-            if excitation.base
-            else 1.0,
+            mass=float(-input_force @ along) if excitation.base else 1.0,
             patches=patches,
             stress=part_stresses(structure.mesh, structure.materials, columns),
         )

@@ -1,6 +1,6 @@
 """From a preloaded structure and what shakes it to the levels of its modes, and what points, bolts and joints bear."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -16,6 +16,7 @@ from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
 from faying.joint.springs import Springs
 from faying.notes import Note
+from faying.result.fields import declared
 from faying.result.provenance import Provenance
 from faying.result.vibration import VibrationResponse
 from faying.service.curves import CurveSets, curve_sets
@@ -31,22 +32,6 @@ CURVE_REACH = {"random": 3.0, "sine": 1.0}
 ANGLES = 24  # round a bolt at which its stress is looked at: of a sine between two of them 0.2 % is missed
 LINES, NEAR_LINES = 300, 12  # frequencies of a curve over the band, and on either side of each resonance
 AROUND, SAMPLES = (0.05, 3.0), 15  # levels at which a mode's damping is drawn, over the one that it reaches
-# quantities of the record that are found with their ends
-ANSWERS = (
-    "frequency",
-    "damping",
-    "level",
-    "acceleration",
-    "velocity",
-    "displacement",
-    "bolt_force",
-    "bolt_moment",
-    "bolt_shear",
-    "stress",
-    "part_stress",
-    "head_motion",
-    "curve",
-)
 SWEPT = 2000  # frequencies of a sweep, and as many more near its resonances
 
 
@@ -179,9 +164,7 @@ def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> 
     worst = np.argmax(np.nan_to_num(moments[..., 0]), axis=-1)[..., None]
     out["stress"] = np.sqrt(np.take_along_axis(moments[..., 0], worst, axis=-1)[..., 0]).max(axis=1)
     every = moments.reshape(len(moments), -1, 4)
-    out["damage"] = np.array(
-        [_most_damage(bolt.fatigue, some) for bolt, some in zip(given.base.bolts, every, strict=True)]
-    )
+    out["damage"] = np.array([_most_damage(b.fatigue, one) for b, one in zip(given.base.bolts, every, strict=True)])
     full = np.concatenate([coordinates, np.ones((1, len(frequencies)))])
     out["part_stress"], out["part_place"] = _worst_stress(given, products(full))
     lines = _coordinates(excited, speeds, dampings, given.lines)
@@ -265,19 +248,14 @@ def _swept_damage(curve: FatigueCurve | None, stress: Array, frequencies: Array)
 
 def _along(excited: Excited, coordinates: Complex, amplitude: Array | float, frequencies: Array) -> Complex:
     """Absolute acceleration of the points along the excitation [m/s2] (p, n)."""
-    return np.asarray(
-        np.einsum("pin,i->pn", _acceleration(excited, coordinates, amplitude, frequencies), _direction(excited))
-    )
-
-
-def _direction(excited: Excited) -> Array:
-    return np.array(excited.excitation.direction)
+    acceleration = _acceleration(excited, coordinates, amplitude, frequencies)
+    return np.asarray(np.einsum("pin,i->pn", acceleration, excited.excitation.direction))
 
 
 def _acceleration(excited: Excited, coordinates: Complex, amplitude: Array | float, frequencies: Array) -> Complex:
     """Absolute acceleration of the points [m/s2] (p, 3, n)."""
     moved = excited.transfer("motion", coordinates, amplitude)
-    base = _direction(excited)[:, None] * np.asarray(amplitude) if excited.excitation.base else 0.0
+    base = np.outer(excited.excitation.direction, amplitude) if excited.excitation.base else 0.0
     return np.asarray(base - (2 * np.pi * frequencies) ** 2 * moved)
 
 
@@ -356,7 +334,6 @@ def _with_ends(
 
 
 def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], place: Array) -> VibrationResponse:
-    """The answers with what they belong to."""
     base, excited, structure = given.base, given.excited, given.base.structure
     excitation, elastic = excited.excitation, slice(excited.rigid, None)
     times = excitation.duration if excitation.kind == "random" else 1 / excitation.rate if excitation.rate else None
@@ -370,6 +347,7 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
         curve = sets.best[k - 1]
         reach[k - 1] = curve.amplitudes.max(initial=0.0) * curve.speed**2 * excited.greatest[elastic][k - 1]
     levels, damping = _curves(given, sets.best, found)
+    recorded = declared(VibrationResponse).keys() - {"damage"}  # that of one second, or of one sweep
     return VibrationResponse(
         title=base.title,
         name=excitation.name,
@@ -382,7 +360,7 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
         joints=tuple(joint.name for joint in structure.joints),
         parts=tuple(structure.mesh.parts),
         part_stress_place=place,
-        direction=_direction(excited),
+        direction=np.array(excitation.direction),
         input_frequency=excitation.table.frequencies,
         input_value=excitation.table.values,
         rest_frequency=excited.speeds[elastic] / (2 * np.pi),
@@ -399,7 +377,7 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
         reach=reach,
         notes=tuple(_notes(given, sets, found, reach)),
         provenance=base.provenance,
-        **{name: found[name] for name in ANSWERS},
+        **{name: values for name, values in found.items() if name in recorded},
     )
 
 
@@ -417,18 +395,17 @@ def _curves(given: _Answering, curves: Sequence[ModeCurve], found: Mapping[str, 
     return sigma * speed**2 * (scale / speeds**2)[:, None], damping
 
 
-def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach: Array) -> list[Note]:
+def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach: Array) -> Iterator[Note]:
     """What is assumed, what was left out, and where joints slide."""
     excitation, what = given.excited.excitation, f"vibration {given.excited.excitation.name!r}"
     last = float(excitation.table.frequencies[-1])
     modes = given.excited.speeds / (2 * np.pi)
-    out = []
     if last > modes[-1]:
         text = (
             f"{what} goes up to {last:g} Hz, and the modes that were found up to {modes[-1]:.5g} Hz: what is beyond "
             "answers as at rest; raise modes.count"
         )
-        out.append(Note(code="vibration-band", text=text))
+        yield Note(code="vibration-band", text=text)
     level = found["level"][1]
     rms = " rms" if excitation.kind == "random" else ""
     for k in np.flatnonzero(CURVE_REACH[excitation.kind] * level > reach).tolist():
@@ -437,16 +414,15 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
             "cycle of the mode alone is found, as its joints open or slide; frequency and damping stay as they are "
             "there, which may be far off"
         )
-        out.append(Note(code="vibration-beyond", text=text))
+        yield Note(code="vibration-beyond", text=text)
     if np.any(found.get("jumps", np.zeros(1)) > 0):
         text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
-        out.append(Note(code="vibration-jumps", text=text))
+        yield Note(code="vibration-jumps", text=text)
     words = assumed_words(friction=sets.least is not None, rest=not given.base.structure.predicts_loss)
     if words:
-        out.append(Note(code="level-damping", text=f"damping in service assumes {' and '.join(words)}"))
+        yield Note(code="level-damping", text=f"damping in service assumes {' and '.join(words)}")
     text = (
         "each mode has the damping of its own level; where two modes that shake one joint are strong together, the "
         "joint slips more than either alone makes it"
     )
-    out.append(Note(code="vibration-alone", text=text))
-    return out
+    yield Note(code="vibration-alone", text=text)
