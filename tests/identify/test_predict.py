@@ -278,7 +278,7 @@ def test_samples_miss_full_solutions_by_less_than_is_said(plan):
         for load, variant in enumerate(found):
             index = (ensemble.training + sample) * ensemble.loads + load
             laws, forces, _ = work.builder.laws(index)
-            scales = dict(zip(ensemble.varied_parts, model.scales, strict=True))
+            scales = dict(zip(work.builder.parts, model.scales, strict=True))
             structure = reduced.trainer.structure
             materials = {
                 part: replace(solid, E=solid.E * scales[part][0], density=solid.density * scales[part][1])

@@ -155,7 +155,7 @@ def test_a_half_made_by_another_version_is_refused(plan, tmp_path, monkeypatch):
     def stopped(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(module, "_first_bases", stopped)
+    monkeypatch.setattr(module.Trainer, "of", stopped)
     monkeypatch.setattr(part_folder, "__version__", "0.0.9")
     with pytest.raises(KeyboardInterrupt):
         sweep(plan, axes(), out)

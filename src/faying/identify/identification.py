@@ -298,6 +298,7 @@ class Identification(Recorded):
         """Return the groups that ArviZ knows as an xarray.DataTree, as `xarray.open_datatree` reads them."""
         return super().to_xarray().drop_nodes(OWN)
 
+    @drawing
     @checked_call
     def plot(self, ax: Any = None) -> "list[Axes]":
         """Draw each parameter before and after the test, and frequencies and loss factors beside the test.
@@ -311,7 +312,10 @@ class Identification(Recorded):
         Raises:
             InputError: The number of axes does not fit.
         """
-        return identification_axes(self, ax)
+        heights = _heights(self)
+        axes = axes_of(ax, len(heights), width=WIDE, height=max(heights), columns=1)
+        _draw(axes, self)
+        return axes
 
 
 def mixed(found: Mapping[str, Found], prior: Mapping[str, float], *, seed: int = 0) -> Found:
@@ -377,15 +381,6 @@ def figure(found: Identification) -> Any:
     return fig
 
 
-@drawing
-def identification_axes(found: Identification, ax: Any = None) -> "list[Axes]":
-    """Draw the same into axes, one for each panel."""
-    heights = _heights(found)
-    axes = axes_of(ax, len(heights), width=WIDE, height=max(heights), columns=1)
-    _draw(axes, found)
-    return axes
-
-
 def _draw(axes: "Sequence[Axes]", found: Identification) -> None:
     upper, *lower = axes
     _draw_parameters(upper, found)
@@ -407,13 +402,11 @@ def _parts(found: Identification) -> list[tuple[Array, Array, str]]:
 
 
 def _heights(found: Identification) -> list[float]:
-    """Heights of the panels [inches]."""
     heights = [0.6 + 0.22 * len(found.names)]
     return heights + [0.6 + 0.24 * found.test.shape[1] * len(found.loads) ** 0.5] * len(_parts(found))
 
 
 def _draw_parameters(ax: Any, found: Identification) -> None:
-    """Each parameter after the test, over its prior."""
     low, high = np.array([one.quantile(np.array([0.05, 0.95])) for one in found.priors]).T
     low_after, middle, high_after = (found.quantiles() - low) / (high - low)
     y = np.arange(len(found.names))

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, hypot, inf, log2
+from typing import Protocol
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from faying.errors import InputError
 from faying.identify import remarks
 from faying.identify.fit import Fit, identifiability, least_squares_ends
 from faying.identify.identification import Identification
-from faying.identify.model import Model
 from faying.identify.noise import (
     DISCREPANCY,
     DISCREPANCY_SD,
@@ -37,6 +37,31 @@ IDLE, BLUNT = 0.1, 0.5  # errors over the scatter of the test that do not matter
 GAINED = 0.8  # of the error that a surrogate claims: one drawn closer that still claims more is the last
 AGREE = 0.1  # of the scatter: misfits so near to the best are as good
 WIDENED = 1.6  # points about the posterior, over its own spread
+
+
+class Model(Protocol):
+    """A model with parameters that scatter, evaluated at many of their values.
+
+    names, units, priors: of the d parameters, which are independent; units are SI, "" for plain numbers.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    priors: tuple[Distribution, ...]
+
+    def frequencies(self, values: Array, report: Report | None = None, allowed: float = inf) -> tuple[Array, list[str]]:
+        """The frequencies of the test's modes, and after them their loss factors where the test has these.
+
+        Args:
+            values: of the parameters (n, d), SI.
+            report: told what is done, how much of it, and of how much.
+            allowed: the model's own estimate of a frequency's relative error up to which it is good enough.
+
+        Returns:
+            Frequencies [Hz] (n, load, mode), or with loss factors [-] (n, load, twice as many), NaN where a sample has
+            no answer or a mode of the test no partner; and for each sample the reason why it has no answer, "" where it
+            has one.
+        """
 
 
 def identify_model(

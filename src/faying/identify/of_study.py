@@ -151,14 +151,7 @@ def left_out(study: Study, wanted: str | float | Sequence[str | float] | None) -
 
 
 def _identified(
-    study: Study,
-    left: tuple[int, ...],
-    *,
-    seed: int,
-    count: int,
-    jobs: int,
-    store: SampleStore,
-    report: Report | None,
+    study: Study, left: tuple[int, ...], *, seed: int, count: int, jobs: int, store: SampleStore, report: Report | None
 ) -> Identification:
     choice, test = scattering(study), study.test
     assert test is not None

@@ -89,7 +89,7 @@ class Prediction(Recorded):
         discrepancy: Standard deviation of ln f that the samples lack: of each mode, and of parts that do not scatter.
         backbones: Of the first samples; None where they were not asked for.
         notes: What there is to say.
-        frequencies_of_test, test_source: The test, where the study has one.
+        test, test_source: The test, where the study has one.
     """
 
     KIND: ClassVar[str] = "prediction"
@@ -174,7 +174,7 @@ class Prediction(Recorded):
         return replace(found, backbone_frequencies=frequencies, backbone_damping=damping)
 
     def _with_discrepancy(self, values: Array) -> Array:
-        """Frequencies (n, ...) with those that the discrepancy makes of each, in equal shares (n * NODES, ...)."""
+        """Frequencies (n, ...) with those that the discrepancy makes of each, in equal shares (n * scores, ...)."""
         if not self.discrepancy:
             return values
         return np.concatenate([values * np.exp(self.discrepancy * score) for score in SCORES])
@@ -360,6 +360,7 @@ class Prediction(Recorded):
         """The same with more to say."""
         return replace(self, notes=(*self.notes, *notes))
 
+    @drawing
     @checked_call
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the 5 to 95 % of each frequency about its median, with the test where there is one.
@@ -373,7 +374,12 @@ class Prediction(Recorded):
         Raises:
             InputError: It is not axes, or no sample has an answer.
         """
-        return interval_axes(self, ax)
+        if not self.answered:
+            raise InputError(f"no sample has an answer: {'; '.join(self.reasons)}")
+        (target,) = axes_of(ax, 1, width=WIDE, height=_height(self))
+        _draw_intervals(target, self)
+        target.legend(loc="best")
+        return target
 
 
 def _levels(values: Array, levels: tuple[float, ...]) -> Array:
@@ -391,23 +397,15 @@ MAX_INPUTS = 6  # of the scatter matrix
 @drawing
 def intervals(found: Prediction) -> Any:
     """Return the figure of the 5 to 95 % of each frequency over its median, one column a preload, the test as dots."""
-    count = found.observed[0].shape[2]
-    fig = new_figure(WIDE, max(2.1, 1.2 + 0.24 * count * len(found.loads) ** 0.5))
+    fig = new_figure(WIDE, _height(found))
     _draw_intervals(fig.subplots(), found)
     fig.legend(loc="outside lower center", ncols=4)
     return fig
 
 
-@drawing
-def interval_axes(found: Prediction, ax: "Axes | None" = None) -> "Axes":
-    """Draw the 5 to 95 % of each frequency over its median, and the test."""
-    if not found.answered:
-        raise InputError(f"no sample has an answer: {'; '.join(found.reasons)}")
-    count = found.observed[0].shape[2]
-    (target,) = axes_of(ax, 1, width=WIDE, height=max(2.1, 1.2 + 0.24 * count * len(found.loads) ** 0.5))
-    _draw_intervals(target, found)
-    target.legend(loc="best")
-    return target
+def _height(found: Prediction) -> float:
+    """Of the figure of intervals [inches]."""
+    return float(max(2.1, 1.2 + 0.24 * found.observed[0].shape[2] * len(found.loads) ** 0.5))
 
 
 def _draw_intervals(ax: Any, found: Prediction) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Self
 
@@ -27,7 +28,7 @@ from faying.progress import Report, silent
 from faying.result import Result
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
-from faying.sweeps.parallel import Rows, each, rows_of
+from faying.sweeps.parallel import Rows, rows_of
 from faying.typing import Array, Index
 
 MIN_ASSEMBLIES, MAX_ASSEMBLIES = 2, 100_000
@@ -216,18 +217,10 @@ def reassembled(
 
 def _solved(work: Assembler, jobs: int, store: SampleStore, report: Report) -> Rows:
     """Rows of all points; those that interrupted work has left are not solved again."""
-    chunks = [list(range(k, min(k + CHUNK, work.points))) for k in range(0, work.points, CHUNK)]
-    done = {k: rows for k in range(len(chunks)) if (rows := store.rows("assemblies", k)) is not None}
-    report("assemblies", CHUNK * len(done), work.points)
+    chunks = [range(k, min(k + CHUNK, work.points)) for k in range(0, work.points, CHUNK)]
     sent = replace(work, case=replace(work.case, structure=replace(work.case.structure, assembled=None)))
-    for chunk, rows in each(
-        (work if jobs == 1 else sent).rows, [chunks[k] for k in range(len(chunks)) if k not in done], jobs
-    ):
-        number = chunk[0] // CHUNK
-        store.keep_rows("assemblies", number, rows)
-        done[number] = rows
-        report("assemblies", min(CHUNK * len(done), work.points), work.points)
-    return {name: np.concatenate([done[k][name] for k in range(len(chunks))]) for name in done[0]}
+    rows = (work if jobs == 1 else sent).rows
+    return store.all_rows("assemblies", rows, chunks, jobs, partial(report, "assemblies"))
 
 
 def _collected(work: Assembler, rows: Rows, result: Result, seed: int) -> Assemblies:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import final
 
 import numpy as np
@@ -63,7 +64,7 @@ def shares(function: Callable[[Array], Array], priors: Sequence[Distribution], *
         return y
 
     load_direction_numbers()
-    dists = [_Quantile(prior) for prior in priors]
+    dists = [SimpleNamespace(ppf=prior.quantile) for prior in priors]
     found = sobol_indices(func=outputs, n=count, dists=dists, rng=np.random.default_rng(0))
     least, greatest = np.min([low for low, _ in ends], axis=0), np.max([high for _, high in ends], axis=0)
     still = greatest - least <= MIN_RANGE * np.maximum(np.abs(least), np.abs(greatest))
@@ -83,13 +84,3 @@ def _finite(function: Callable[[Array], Array], x: Array) -> Array:
     if not np.isfinite(y).all():
         raise InputError("an output is not finite; shares of variance need an answer at every point")
     return np.atleast_2d(y.T)
-
-
-class _Quantile:
-    """A distribution under the name that SciPy asks for."""
-
-    def __init__(self, prior: Distribution) -> None:
-        self.prior = prior
-
-    def ppf(self, u: Array) -> Array:
-        return self.prior.quantile(u)

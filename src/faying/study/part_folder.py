@@ -76,8 +76,7 @@ def _opened(out: Path, fingerprint: str, what: str) -> tuple[Path, IO[str]]:
     if known.get("fingerprint") == fingerprint:
         return folder, lock
     lock.close()
-    made_by = known.get("version", __version__)
-    if made_by != __version__:
+    if (made_by := known.get("version", __version__)) != __version__:
         raise InputError(
             f"{folder} was begun by Faying {made_by}, and this is {__version__}, whose numbers may differ: "
             f"finish the {what} with {made_by}, or remove the folder and begin anew"

@@ -35,7 +35,6 @@ def schema() -> dict[str, Any]:
 
 
 def _table(inner: Inner) -> dict[str, Any]:
-    """The schema of one table."""
     if inner.free:
         return {"type": "object"}
     properties = {name: _one(what) for name, what in inner.keys.items() if name != NAME} | _of_models(inner.models())
@@ -50,7 +49,6 @@ def _needed(what: Key | Inner) -> bool:
 
 
 def _one(what: Key | Inner) -> dict[str, Any]:
-    """The schema of a key or a table, with its sentence."""
     if isinstance(what, Key):
         return _described(what.schema, what)
     table = _table(what)
@@ -76,8 +74,7 @@ def _of_models(models: Mapping[str, Declared]) -> dict[str, Any]:
         for name, what in keys.items():
             kinds, one = by_name.setdefault(name, []), _one(what)
             owners.setdefault(name, []).append(label.lower())
-            if one not in kinds:
-                kinds.append(one)
+            kinds += [] if one in kinds else [one]
     return {
         name: (kinds[0] if len(kinds) == 1 else {"title": "laws", "anyOf": kinds}) | {"x-laws": owners[name]}
         for name, kinds in by_name.items()

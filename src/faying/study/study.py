@@ -130,7 +130,6 @@ class Study(Summary):
 
     @property
     def _asked(self) -> list[str]:
-        """What the study has beyond modes."""
         every = {
             "test": self.test or self.hammer,
             "response": self.response,
@@ -192,7 +191,7 @@ class Study(Summary):
             InputError: The path leads nowhere, or what is written there cannot be; with what is allowed.
         """
         data = with_value(self.data, path, value)
-        text = f"{self.text.rstrip()}\n{change_line(path, value)}\n"
+        text = f"{self.text.rstrip()}\n# changed in Python: {path} = {shortened(value)}\n"
         return replace(Study.from_dict(data, folder=self.folder, where=f"{path} changed", text=text), name=self.name)
 
     @classmethod
@@ -358,9 +357,7 @@ def _note_lacking_laws(
 ) -> None:
     """Note what the laws of the study, of [[alternative]] and of [backbone] do not find in the surfaces."""
     _note_lacking(faults, joints, *shared)
-    changes = [
-        (f"alternative[{number}]: ", other.law, other.surface) for number, other in enumerate(alternatives, start=1)
-    ]
+    changes = [(f"alternative[{number}]: ", one.law, one.surface) for number, one in enumerate(alternatives, 1)]
     changes += [("backbone.law: ", law, None) for law in (() if backbone is None else backbone.laws)]
     for where, law, surface in changes:
         changed = tuple(replace(j, law=law or j.law, surface=surface or j.surface) for j in joints)
@@ -417,7 +414,6 @@ def _parts(path: str) -> list[str]:
 
 
 def _set(table: dict[str, Any], keys: Declared, parts: Sequence[str], value: Any, path: str) -> None:
-    """Set a value in a table, or in one within it."""
     name, rest = parts[0], parts[1:]
     what = keys.get(name) or keys.get(NAME)
     if what is None:
@@ -472,8 +468,3 @@ def _written(what: Key | Inner, value: Any) -> Any:
     if what.unit and isinstance(value, int | float) and not isinstance(value, bool):
         return f"{value!r} {what.unit}"
     return value
-
-
-def change_line(path: str, value: Any) -> str:
-    """A comment that says what was changed, for the text that a result keeps."""
-    return f"# changed in Python: {path} = {shortened(value)}"

@@ -51,9 +51,8 @@ class InputTable:
         """The value at frequencies [Hz] of any shape; 0 below the first and above the last."""
         f = np.asarray(frequencies, dtype=float)
         inside = (f >= self.frequencies[0]) & (f <= self.frequencies[-1])
-        logs = np.interp(
-            np.log(np.where(inside, f, self.frequencies[0])), np.log(self.frequencies), np.log(self.values)
-        )
+        at = np.log(np.where(inside, f, self.frequencies[0]))
+        logs = np.interp(at, np.log(self.frequencies), np.log(self.values))
         return np.asarray(np.where(inside, np.exp(logs), 0.0))
 
 

@@ -14,7 +14,7 @@ from faying.study.keys.surface import Surface
 from faying.study.keys.varied import MODEL, varied
 from faying.study.keys.varied import words as words_of_keys
 from faying.study.study import Study
-from faying.sweeps.variant_builder import StudyVariant, check_key, scaled_parts
+from faying.sweeps.variant_builder import StudyVariant, check_key
 
 MAX_POINTS = 1_000_000  # points of a grid
 
@@ -43,7 +43,7 @@ class Axis:
         first, last = self.values[0], self.values[-1]
         if isinstance(first, str) or isinstance(last, str):
             return f"{self.key} = {', '.join(map(str, self.values))}"
-        ends = (f"{v:g}" if not self.unit else units.show(v, self.unit) for v in (first, last))
+        ends = (units.show(v, self.unit) if self.unit else f"{v:g}" for v in (first, last))
         return f"{self.key} = {' to '.join(ends)}, {len(self.values)} values"
 
 
@@ -107,7 +107,7 @@ class Grid:
     axes: tuple[Axis, ...]
 
     def __post_init__(self) -> None:
-        keys = [axis.key for axis in self.axes]
+        keys = self.keys
         if not keys or len(set(keys)) < len(keys):
             raise InputError(f"a sweep needs each axis once; --set gave {', '.join(keys) or 'none'}")
         if self.size > MAX_POINTS:
@@ -135,14 +135,9 @@ class Grid:
         return int(np.ravel_multi_index(tuple(n // 2 for n in self.shape), self.shape))
 
     @property
-    def varies_form(self) -> bool:
-        """Whether an axis varies the form of the faces."""
-        return any(axis.of_form for axis in self.axes)
-
-    @property
-    def varied_parts(self) -> tuple[str, ...]:
-        """Parts whose stiffness or mass varies."""
-        return tuple(dict.fromkeys(part for axis in self.axes for part in scaled_parts(self.study, axis.key)))
+    def keys(self) -> tuple[str, ...]:
+        """What varies."""
+        return tuple(axis.key for axis in self.axes)
 
     def point(self, index: int) -> StudyVariant:
         """Return the study at one place of the grid."""

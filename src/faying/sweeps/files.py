@@ -81,14 +81,7 @@ class Sweep:
 class SweepStore(PartFile):
     """The folder OUT.part beside the output: the reduced model and every chunk that is done."""
 
-    COLUMNS: ClassVar[tuple[str, ...]] = (
-        "frequencies",
-        "loss_factors",
-        "estimate",
-        "greatest_pressure",
-        "open_share",
-        "above_range_share",
-    )
+    COLUMNS: ClassVar[tuple[str, ...]] = (*OF_MODES, "estimate", "greatest_pressure", "open_share", "above_range_share")
 
     def __init__(self, out: Path, fingerprint: str, size: int, count: int) -> None:
         super().__init__(out, fingerprint, what="sweep")
@@ -98,11 +91,9 @@ class SweepStore(PartFile):
         }
         self.reasons = np.full(size, "", dtype=object)
         self.done = np.zeros(size, dtype=bool)
-        self.found = 0
         self._take_up()
 
     def _take_up(self) -> None:
-        """Take up what an interrupted sweep has left."""
         assert self.folder is not None
         chunks = sorted(self.folder.glob("chunk-*.npz"))
         for file in chunks:

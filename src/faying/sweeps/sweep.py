@@ -87,7 +87,10 @@ def sweep(
     mark = fingerprint(study, tuple(axes), tolerance)
     with SweepStore(Path(out), mark, grid.size, study.modes.count) as store:
         report("mesh", 0, 0)
-        trainer, model = _first_bases(study, grid, store, tolerance, report)
+        trainer, model = Trainer.of(study, grid, tolerance, report), store.model()
+        if model is None:
+            model = trainer.model()
+            store.keep_model(model)
         report("evaluations", store.found, grid.size)
         # within a chunk each point starts from the last; chunks are the same after an interruption, so the answers are
         path = grid.winding()
@@ -96,21 +99,9 @@ def sweep(
         for indices, rows in each(work, chunks, jobs):
             store.keep(indices, rows)
             report("evaluations", int(store.done.sum()), grid.size)
-        model = _enriched(model, trainer, store, trainer.builder)
+        model = _enriched(model, trainer, store)
         unknowns = trainer.structure.mesh.unknowns
         return store.written(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
-
-
-def _first_bases(
-    study: Study, grid: Grid, store: SweepStore, tolerance: float, report: Report
-) -> tuple[Trainer, ReducedModel]:
-    """What makes the bases, and the model in them: made now, or left by an interrupted sweep."""
-    trainer = Trainer.of(study, grid, tolerance, report)
-    model = store.model()
-    if model is None:
-        model = trainer.model()
-        store.keep_model(model)
-    return trainer, model
 
 
 def _check_laws(grid: Grid) -> None:
@@ -142,7 +133,7 @@ def _check(study: Study, tolerance: float) -> None:
         raise InputError('a sweep takes springs per area; leave out springs = "per-node", or run studies one by one')
 
 
-def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, builder: VariantBuilder) -> ReducedModel:
+def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore) -> ReducedModel:
     """Train on the points whose estimate is far beyond the tolerance, until none is left or nothing is gained."""
     for _ in range(20):
         far = np.flatnonzero(store.rows["estimate"] > REFINED_ABOVE * trainer.tolerance)
@@ -153,7 +144,7 @@ def _enriched(model: ReducedModel, trainer: Trainer, store: SweepStore, builder:
         model = trainer.model(worst.tolist())
         store.keep_model(model)
         before = store.rows["estimate"][far].copy()
-        for indices, rows in each(partial(evaluate, model, builder), [far.tolist()], 1):
+        for indices, rows in each(partial(evaluate, model, trainer.builder), [far.tolist()], 1):
             store.keep(indices, rows)
         if not np.any(store.rows["estimate"][far] < before):
             break

@@ -77,12 +77,11 @@ class Trainer:
     def resume(self, kept: Mapping[str, Array]) -> None:
         """Go on with bases that interrupted work has left, from `Reduction.arrays`."""
         self.report("reference solution", 0, 0)
-        self.reduction = Reduction.resumed(
-            self.structure, kept, solver=self.study.modes.solver, shares=self._part_shares()
-        )
+        shares = self._part_shares()
+        self.reduction = Reduction.resumed(self.structure, kept, solver=self.study.modes.solver, shares=shares)
 
     def _part_shares(self) -> PartShares | None:
-        parts = self.builder.design.varied_parts
+        parts = self.builder.parts
         return PartShares.of(self.structure, parts) if parts else None
 
     def _first_bases(self, points: Sequence[int]) -> Reduction:
@@ -120,8 +119,7 @@ class Trainer:
                     scales=self.builder.scales(index),
                 )
             except FayingError as met:  # a point without an answer is reported when it is evaluated
-                fault = met
-                start = None
+                fault, start = met, None
         if fault is not None and not reduction.trained:
             raise fault
 

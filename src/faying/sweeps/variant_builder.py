@@ -1,6 +1,6 @@
 """What makes the laws, forces, gaps and scales of one point of a sweep or of an ensemble."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -21,7 +21,7 @@ from faying.reduction.part_shares import Scales
 from faying.reduction.reduced import ReducedModel
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import Surface
-from faying.study.keys.varied import MODEL, number_of, varied
+from faying.study.keys.varied import MODEL, number_of, owners, varied
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -29,13 +29,8 @@ from faying.typing import Array
 def check_key(study: Study, key: str, *, models: bool, where: str) -> None:
     """InputError where the study has nothing that this key could vary; models: whether the law varies, too."""
     room, _, name = key.partition(".")
-    known = {
-        "bolt": [bolt.name for bolt in study.bolts],
-        "joint": [joint.name for joint in study.joints],
-        "part": list(study.parts),
-        "material": sorted(set(study.parts.values())),
-    }
     if (number := varied(key)) is not None:
+        known = owners((one.name for one in study.joints), (one.name for one in study.bolts), study.parts)
         number.check_owner(known, where)
     if room == "surface":
         if all(joint.surface is not None for joint in study.joints):
@@ -91,19 +86,18 @@ class StudyVariant:
             columns = [put(self.forces[..., k], bolt.name) for k, bolt in enumerate(study.bolts)]
             return replace(self, forces=np.stack(columns, axis=-1))
         scales = dict(self.scales)
-        for part in scaled_parts(study, key):
+        for part in scaled_parts(study, [key]):
             material = study.materials[study.parts[part]]
             new, (stiffness, mass) = number.put(material, value), scales.get(part, (1.0, 1.0))
             scales[part] = stiffness * (new.E / material.E), mass * (new.density / material.density)
         return replace(self, scales=scales)
 
 
-def scaled_parts(study: Study, key: str) -> list[str]:
-    """Parts whose stiffness or mass a key varies: one part, or those of one material."""
-    number = varied(key)
-    if number is None or number.room not in ("part", "material"):
-        return []
-    return [part for part, material in study.parts.items() if number.owner == {"part": part}.get(number.room, material)]
+def scaled_parts(study: Study, keys: Iterable[str]) -> tuple[str, ...]:
+    """Parts whose stiffness or mass some keys vary, each of which names a part, or the material of parts."""
+    owners = [(number.room, number.owner) for number in map(varied, keys) if number is not None]
+    of = {part: (("part", part), ("material", material)) for part, material in study.parts.items()}
+    return tuple(dict.fromkeys(part for owner in owners for part, names in of.items() if owner in names))
 
 
 LATELY = 32  # laws and tables that are not made again
@@ -117,9 +111,7 @@ def contact_shares(weights: Array, laws: Sequence[JointLaw], pressures: Sequence
     weights (q,): area of all points [m2]; pressures [Pa]: of each joint.
     """
     p = np.concatenate(pressures)
-    ends = np.concatenate(
-        [np.full(len(q), law.model.greatest_pressure) for q, law in zip(pressures, laws, strict=True)]
-    )
+    ends = np.repeat([law.model.greatest_pressure for law in laws], [len(one) for one in pressures])
     touching = float(weights @ (p > 0))
     return 1 - touching / float(weights.sum()), float(weights @ (p > ends)) / touching if touching else 0.0
 
@@ -144,12 +136,8 @@ class Design(Protocol):
         """A point in the middle of all."""
 
     @property
-    def varies_form(self) -> bool:
-        """Whether the form of the faces varies."""
-
-    @property
-    def varied_parts(self) -> tuple[str, ...]:
-        """Parts whose stiffness or mass varies."""
+    def keys(self) -> tuple[str, ...]:
+        """What varies."""
 
     def corners(self, most: int) -> list[int]:
         """At most so many of the points that lie farthest out."""
@@ -172,7 +160,7 @@ class JointPlacement:
     @classmethod
     def all(cls, structure: Structure, design: Design) -> "tuple[JointPlacement, ...]":
         """The place of each joint; none where no form varies."""
-        if not design.varies_form:
+        if not any(number.of_form for number in map(varied, design.keys) if number is not None):
             return ()
         out = []
         for joint, choice, surface in zip(structure.joints, design.study.joints, design.surfaces, strict=True):
@@ -223,13 +211,18 @@ class VariantBuilder:
 
     design: Design
     pairs: tuple[tuple[Material, Material], ...]
-    places: tuple["JointPlacement", ...] = ()  # of each joint, where its form varies; empty where none does
+    places: tuple[JointPlacement, ...] = ()  # of each joint, where its form varies; empty where none does
     # contact laws, and the laws of joints with their tables: along an axis of preload they stay the same
     _made: Lately[tuple[int, LawChoice, Surface], MadeLaw] = field(default_factory=Lately, repr=False, compare=False)
     _laid: Lately[tuple[MadeLaw, JointLaw], JointLaw] = field(default_factory=Lately, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
         return {**vars(self), "_made": Lately(), "_laid": Lately()}
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Parts whose stiffness or mass varies."""
+        return scaled_parts(self.design.study, self.design.keys)
 
     def gaps(self, index: int) -> list[Array] | None:
         """Gap [m] (q,) of each joint at one point; None where no form varies."""
@@ -245,7 +238,6 @@ class VariantBuilder:
         return laws, point.forces, [joint.friction for joint in point.study.joints]
 
     def _law(self, point: StudyVariant, number: int) -> JointLaw:
-        """Law of one joint at one point."""
         joint, surface, (rough, other) = point.study.joints[number], point.surfaces[number], self.pairs[number]
         law = point.study.law_of(joint)
         made = self._made.get((number, law, surface), lambda: MadeLaw(law.make(surface, rough, other)))
@@ -258,11 +250,10 @@ class VariantBuilder:
 
     def scales(self, index: int) -> Scales | None:
         """Factors on the stiffness and the mass of each part that varies; None where none does."""
-        parts = self.design.varied_parts
-        if not parts:
+        if not self.parts:
             return None
         found = self.design.point(index).scales
-        return [found.get(part, (1.0, 1.0)) for part in parts]
+        return [found.get(part, (1.0, 1.0)) for part in self.parts]
 
     def case(self, structure: Structure, index: int) -> Case:
         """One point, ready to be solved in full at its one load.

@@ -90,9 +90,7 @@ class Emulator:
         if self.close is not None:
             inside = self._inside(x)
             slopes[inside] = self.close.gradient(x[inside])
-        out = np.full((len(x), *self.known.shape, len(self.priors)), np.nan)
-        out[:, self.known] = slopes
-        return out
+        return self._spread(slopes)
 
     def _inside(self, x: Array) -> Mask:
         assert self.centre is not None
@@ -100,7 +98,8 @@ class Emulator:
         return np.asarray(np.linalg.norm((x - self.centre) @ self.inverse, axis=1) <= 1)
 
     def _spread(self, values: Array) -> Array:
-        out = np.full((len(values), *self.known.shape), np.nan)
+        """Values (n, k, ...) of the known frequencies among all (n, load, mode, ...), NaN for the others."""
+        out = np.full((len(values), *self.known.shape, *values.shape[2:]), np.nan)
         out[:, self.known] = values
         return out
 

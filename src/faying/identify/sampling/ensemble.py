@@ -13,10 +13,10 @@ from faying.errors import FayingError, InputError
 from faying.identify.sampling.points import at_shares, sobol
 from faying.study.keys.surface import Surface
 from faying.study.keys.uncertain import Input, UncertainChoice
-from faying.study.keys.varied import MODEL, varied
+from faying.study.keys.varied import MODEL
 from faying.study.study import Study
 from faying.surface.estimators.base import EstimateScatter
-from faying.sweeps.variant_builder import StudyVariant, check_key, scaled_parts
+from faying.sweeps.variant_builder import StudyVariant, check_key
 from faying.typing import Array
 
 LEVEL = "surface.level"  # of the spectrum in the middle of its band, at a given D
@@ -87,10 +87,6 @@ class Inputs:
         for key, value in named.items():
             point = point.with_value(key, self.model(value) if key == MODEL else value)
         return point
-
-    def scaled_parts(self, study: Study) -> tuple[str, ...]:
-        """Parts whose stiffness or mass scatters."""
-        return tuple(dict.fromkeys(part for key in self.names for part in scaled_parts(study, key)))
 
 
 def scattering(study: Study) -> UncertainChoice:
@@ -231,14 +227,9 @@ class Ensemble:
         return self.loads - 1
 
     @property
-    def varies_form(self) -> bool:
-        """Whether the form of the faces scatters."""
-        return any(number.of_form for number in map(varied, self.inputs.names) if number is not None)
-
-    @property
-    def varied_parts(self) -> tuple[str, ...]:
-        """Parts whose stiffness or mass scatters."""
-        return self.inputs.scaled_parts(self.study)
+    def keys(self) -> tuple[str, ...]:
+        """What varies."""
+        return self.inputs.names
 
     def corners(self, most: int) -> list[int]:
         """The samples for training, at the first and the last load in turn, the medians at both."""

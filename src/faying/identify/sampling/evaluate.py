@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -170,12 +171,7 @@ class Reduced:
     """
 
     def __init__(
-        self,
-        ensemble: Ensemble,
-        *,
-        jobs: int = 1,
-        report: Report | None = None,
-        store: SampleStore | None = None,
+        self, ensemble: Ensemble, *, jobs: int = 1, report: Report | None = None, store: SampleStore | None = None
     ) -> None:
         self.jobs = jobs
         self.report: Report = report or silent
@@ -241,7 +237,10 @@ class Reduced:
         known = self.store.rows(f"{what}-all", 0)
         if known is not None:
             return known
-        out = self._first(ensemble, what, law)
+        chunks = [range(i, min(i + CHUNK, ensemble.count)) for i in range(0, ensemble.count, CHUNK)]
+        tell = partial(self.report, "evaluations")
+        out = self.store.all_rows(what, self._evaluator(ensemble, law).rows, chunks, self.jobs, tell)
+        out["reasons"] = out["reasons"].astype(object)  # of any length
         for _ in range(ROUNDS):
             worst = _worst(out)
             far = np.flatnonzero(worst > allowed)
@@ -250,8 +249,9 @@ class Reduced:
             self.report(f"enrichment: {len(far)} samples", 0, 0)
             ranked = far[np.argsort(-worst[far])]
             self._train(self._points(ensemble, out, ranked[:WORST]), _all_loads(ensemble, ranked[:NEW]))
-            for indices, rows in self._evaluated(ensemble, [far.tolist()], law):
-                _put(out, ensemble.count, indices, rows)
+            for indices, rows in each(self._evaluator(ensemble, law).rows, [far.tolist()], self.jobs):
+                for name, values in rows.items():
+                    out[name][list(indices)] = values
             if np.count_nonzero(out["estimate"].max(axis=1) > allowed) > GAINED * len(far):
                 break
         self.store.keep_rows(f"{what}-all", 0, out)
@@ -263,36 +263,13 @@ class Reduced:
         loads = np.argmax(np.nan_to_num(rows["estimate"][chosen]), axis=1)
         return [int(point) for point in (ensemble.training + chosen) * ensemble.loads + loads]
 
-    def _first(self, ensemble: Ensemble, what: str, law: int) -> Rows:
-        """Rows of all samples in the bases as they are, or as they were when the samples were kept."""
-        out: Rows = {}
-        chunks = [list(range(i, min(i + CHUNK, ensemble.count))) for i in range(0, ensemble.count, CHUNK)]
-        left = []
-        for number, chunk in enumerate(chunks):
-            found = self.store.rows(what, number)
-            if found is None:
-                left.append(chunk)
-            else:
-                _put(out, ensemble.count, chunk, found)
-        done = ensemble.count - sum(map(len, left))
-        self.report("evaluations", done, ensemble.count)
-        for indices, rows in self._evaluated(ensemble, left, law):
-            done += len(indices)
-            self.report("evaluations", done, ensemble.count)
-            _put(out, ensemble.count, indices, rows)
-            self.store.keep_rows(what, indices[0] // CHUNK, rows)
-        return out
-
-    def _evaluated(
-        self, ensemble: Ensemble, chunks: Sequence[Sequence[int]], law: int
-    ) -> Iterable[tuple[Sequence[int], Rows]]:
-        """Evaluate chunk by chunk, as they come."""
+    def _evaluator(self, ensemble: Ensemble, law: int) -> Evaluator:
+        """What evaluates samples in the bases as they are."""
         builder = replace(self.trainer.builder, design=ensemble)
         if law not in self._work:
             work = Evaluator(model=self.model.grouped(), builder=builder, seen=self.seen)
             self._work[law] = work.with_median(law)
-        work = replace(self._work[law], builder=builder, test=ensemble.study.test)
-        return each(work.rows, chunks, self.jobs)
+        return replace(self._work[law], builder=builder, test=ensemble.study.test)
 
 
 def _all_loads(ensemble: Ensemble, samples: Iterable[int]) -> list[int]:
@@ -304,12 +281,3 @@ def _all_loads(ensemble: Ensemble, samples: Iterable[int]) -> list[int]:
 def _worst(rows: Rows) -> Array:
     """Greatest estimate of each sample over its loads (n,), 0 where it has no answer."""
     return np.asarray(np.nanmax(rows["estimate"], axis=1, initial=0.0))
-
-
-def _put(out: Rows, count: int, indices: Sequence[int], rows: Rows) -> None:
-    """Put the rows of some samples among those of all."""
-    for name, values in rows.items():
-        if name not in out:
-            empty = np.full((count, *values.shape[1:]), np.nan)
-            out[name] = np.full(count, "", dtype=object) if name == "reasons" else empty
-        out[name][list(indices)] = values

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -18,7 +19,7 @@ from faying.numerics.follow import LIKE
 from faying.result.backbone import Backbone
 from faying.study.keys.backbone import BackboneChoice
 from faying.study.study import Study
-from faying.sweeps.parallel import Rows, each, rows_of
+from faying.sweeps.parallel import Rows, rows_of
 from faying.sweeps.variant_builder import VariantBuilder
 from faying.typing import Array
 
@@ -130,15 +131,9 @@ class Follower:
 
     def follow(self, count: int, reduced: Reduced) -> Backbones:
         """The backbones of the first samples; what is done is kept with what else the prediction keeps."""
-        kept = {sample: reduced.store.rows("backbone", sample) for sample in range(count)}
-        done = {sample: rows for sample, rows in kept.items() if rows is not None}
-        left = [[sample] for sample in range(count) if sample not in done]
-        reduced.report("backbones", len(done), count)
-        for (sample,), rows in each(self.rows, left, reduced.jobs):
-            reduced.store.keep_rows("backbone", sample, rows)
-            done[sample] = rows
-            reduced.report("backbones", len(done), count)
-        found = {name: np.concatenate([done[k][name] for k in range(count)]) for name in done[0]}
+        each = [[sample] for sample in range(count)]
+        tell = partial(reduced.report, "backbones")
+        found = reduced.store.all_rows("backbone", self.rows, each, reduced.jobs, tell)
         return Backbones(
             mode=self.choice.mode,
             preload=self.ensemble.study.loads[-1],

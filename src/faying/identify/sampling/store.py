@@ -1,10 +1,14 @@
 """What a prediction or an identification keeps on disk: the bases, and every chunk of samples as it is done."""
 
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
 from faying.reduction.reduce import Reduction
 from faying.reduction.reduced import ReducedModel
 from faying.study.part_folder import PartFile
 from faying.sweeps.files import kept_model
-from faying.sweeps.parallel import Rows
+from faying.sweeps.parallel import Rows, Work, each
 from faying.typing import Array
 
 Bases = tuple[ReducedModel, tuple[Array, Array] | None]
@@ -34,6 +38,25 @@ class SampleStore(PartFile):
     def rows(self, what: str, number: int) -> Rows | None:
         """A chunk of samples that was kept; None where it is missing or damaged."""
         return self.arrays(f"{what}-{number:06d}")
+
+    def all_rows(
+        self, what: str, work: Work, chunks: Sequence[Sequence[int]], jobs: int, tell: Callable[[int, int], object]
+    ) -> Rows:
+        """Rows of all chunks of samples, one chunk behind the other; those that were kept are not evaluated again.
+
+        tell: called with the samples done, and their number.
+        """
+        kept = {number: self.rows(what, number) for number in range(len(chunks))}
+        found = {number: rows for number, rows in kept.items() if rows is not None}
+        done, total = sum(len(chunks[number]) for number in found), sum(map(len, chunks))
+        tell(done, total)
+        left = {chunk[0]: number for number, chunk in enumerate(chunks) if number not in found}
+        for chunk, rows in each(work, [chunks[number] for number in left.values()], jobs):
+            found[left[chunk[0]]] = rows
+            self.keep_rows(what, left[chunk[0]], rows)
+            done += len(chunk)
+            tell(done, total)
+        return {name: np.concatenate([found[k][name] for k in range(len(chunks))]) for name in found[0]}
 
     def keep_rows(self, what: str, number: int, rows: Rows) -> None:
         """Keep a chunk of samples."""

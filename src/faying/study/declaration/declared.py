@@ -5,6 +5,7 @@ Readers, messages, the JSON schema, the page's form and the reference follow fro
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
+from functools import partial
 from math import inf
 from typing import Any
 
@@ -125,7 +126,7 @@ class Key:
             _one_of(choices),
             says,
             default,
-            read=lambda value, name: values.text(value, name, choices),
+            read=partial(values.text, choices=choices),
             allowed=" or ".join(f'"{word}"' for word in choices),
             parameter=Parameter(TEXT, says, choices=choices),
             **given,
@@ -139,10 +140,7 @@ class Key:
     @classmethod
     def within(cls, least: float, greatest: float, says: str, default: Any = None) -> "Key":
         """A plain number from the least to the greatest."""
-
-        def read(value: Any, name: str) -> float:
-            return values.within(value, name, least, greatest)
-
+        read = partial(values.within, least=least, greatest=greatest)
         parameter = Parameter("", says, least, greatest, "[]")
         allowed = f"{least:g} to {greatest:g}"
         return cls("number", NUMBER, says, default, read=read, allowed=allowed, parameter=parameter)
@@ -150,10 +148,7 @@ class Key:
     @classmethod
     def count(cls, says: str, default: Any = None, *, most: int = MAX_COUNT) -> "Key":
         """A whole number from 1."""
-
-        def read(value: Any, name: str) -> int:
-            return values.whole_number(value, name, most)
-
+        read = partial(values.whole_number, most=most)
         return cls("whole number", INTEGER | {"maximum": most}, says, default, read=read, allowed=f"1 to {most:,}")
 
     @classmethod
@@ -174,10 +169,7 @@ class Key:
     @classmethod
     def quantities(cls, form: str, unit: str, count: int, says: str, default: Any = None) -> "Key":
         """So many quantities in a list."""
-
-        def read(value: Any, name: str) -> tuple[float, ...]:
-            return values.quantities(value, name, form, unit, count)
-
+        read = partial(values.quantities, form=form, unit=unit, count=count)
         return cls(form, listed(QUANTITY, count, count), says, default, read=read, unit=unit)
 
     @classmethod
@@ -203,17 +195,8 @@ class Key:
         else:
             schema = QUANTITY if unit else NUMBER
         kind = f"quantity [{unit}]" if unit else "number" if parameter.is_number else TEXT
-        allowed = parameter.allowed
-        return cls(
-            kind,
-            schema,
-            parameter.meaning,
-            default,
-            read=parameter.read,
-            unit=unit,
-            allowed=allowed,
-            parameter=parameter,
-        )
+        more: dict[str, Any] = {"unit": unit, "allowed": parameter.allowed, "parameter": parameter}
+        return cls(kind, schema, parameter.meaning, default, read=parameter.read, **more)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,7 @@
 """Reads tables of a study file and collects every fault, so that the user sees them all at once."""
 
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -45,6 +46,12 @@ class Faults:
     def add(self, text: str) -> None:
         """Note one fault."""
         self.lines.append(text)
+
+    def note_alike(self, kind: str, names: Iterable[str]) -> None:
+        """Note each name that several of a kind have."""
+        for name, count in Counter(names).items():
+            if count > 1:
+                self.add(f"two {kind} are called {name!r}; give each a name of its own")
 
     def raise_if_any(self, where: str) -> None:
         """Raise one StudyFaults that lists all of them, with the keys that nobody took."""
@@ -156,8 +163,7 @@ class Table:
 
     def each(self) -> "dict[str, Table]":
         """Take every table within this one, by name."""
-        found = {name: self.table(name) for name in self.data}
-        return {name: table for name, table in found.items() if table is not None}
+        return {name: table for name in self.data if (table := self.table(name)) is not None}
 
     def named(self, key: str) -> "dict[str, Table]":
         """Take the tables [key.NAME], by name."""

@@ -107,10 +107,6 @@ def laws(value: Any, name: str) -> tuple[LawChoice, ...]:
     return tuple(LawChoice(model=find(one).label) for one in values)
 
 
-def _rest(value: Any, name: str) -> float | str:
-    return "law" if value == "law" else number(value, name)
-
-
 BACKBONE: Declared = {
     "mode": Key.count("Elastic mode, from 1.", 1, most=MAX_MODES),
     "amplitude": Key(
@@ -135,7 +131,7 @@ BACKBONE: Declared = {
         {"anyOf": [{"type": "number"}, {"const": "law"}]},
         'Ratio to critical that is added, or "law": what the laws lose without slip.',
         0.0,
-        read=_rest,
+        read=lambda value, name: "law" if value == "law" else number(value, name),
     ),
     "slip": Key.text(
         "Sliders that follow the curve of the law, or one slider at each point.", "microslip", ("microslip", "coulomb")

@@ -21,16 +21,8 @@ from faying.study.declaration.values import quantity
 from faying.study.keys.face import face_names, two_faces
 from faying.study.keys.material import named_material
 
-OF_THE_MESH = (
-    "material",
-    "seat",
-    "washer",
-    "head_mass",
-    "nut_mass",
-    "engaged",
-    "shank",
-    "head",
-)  # what a meshed bolt has already
+# what a meshed bolt has already
+OF_THE_MESH = ("material", "seat", "washer", "head_mass", "nut_mass", "engaged", "shank", "head")
 
 
 def read_bolt(
@@ -39,10 +31,7 @@ def read_bolt(
     """Read one [[bolt]] and its forces [N] at each preload; no bolt where its faults leave none."""
     name = table.get("name", f"bolt {index + 1}")
     faces = face_names(table, name)
-    at = table.get("at")
-    part = table.get("part")
-    diameter = table.get("diameter")
-    pitch = table.get("pitch")
+    at, part, diameter, pitch = (table.get(key) for key in ("at", "part", "diameter", "pitch"))
     friction = (table.get("thread_friction"), table.get("head_friction"))
     forces = _forces(table, diameter, pitch, friction)
     thread, fastener = _thread(table, diameter, pitch, meshed=part is not None)
@@ -134,14 +123,9 @@ def _forces(
     table: Table, diameter: float | None, pitch: float | None, friction: tuple[float | None, float | None]
 ) -> tuple[float, ...]:
     """Forces [N], given as such or as torques with what turns them into forces."""
-    forces = table.get("preload")
-    torques = table.get("torque")
-    thread: dict[str, Any] = {
-        "nut_factor": table.get("nut_factor"),
-        "pitch": pitch,
-        "thread_friction": friction[0],
-        "head_friction": friction[1],
-    }
+    forces, torques = table.get("preload"), table.get("torque")
+    thread: dict[str, Any] = {"nut_factor": table.get("nut_factor"), "pitch": pitch}
+    thread |= {"thread_friction": friction[0], "head_friction": friction[1]}
     if "preload" not in table.data and "torque" not in table.data:
         table.faults.add(f'{table.where}.preload is missing; give a force such as "12 kN", or torque = "20 N m"')
     if "preload" in table.data and "torque" in table.data:

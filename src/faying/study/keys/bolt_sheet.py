@@ -22,7 +22,7 @@ class BoltSheetChoice:
 
     Args:
         bolt: Name of the bolt; None for all others.
-        way: Way of tightening, a name of `joint.tightening.TIGHTENING`.
+        way: Way of tightening, a name of `bolt.tightening.TIGHTENING`.
         tightening_factor: alpha_A, greatest over least preload.
         thread_friction, head_friction, slip_friction: Coefficients [-], in the thread, under the head, in the joint.
         loads: Load cases that give working load, transverse load, load factor and loss by temperature in place of
@@ -134,8 +134,6 @@ def _axial(value: Any, name: str) -> tuple[float, float]:
 
 
 def _force(says: str) -> Key:
-    """A force that is not negative."""
-
     def read(value: Any, name: str) -> float:
         force = float(quantity(value, "N", name, positive=False))
         if force < 0:
@@ -188,10 +186,6 @@ BOLT_SHEET: Declared = {
     ),
     "thermal_loss": Key.quantity("N", "Preload that temperature takes; negative where it adds some.", positive=False),
     "shear_strength": Key.quantity("Pa", "Shear strength of the part that is tapped."),
-    "rolled": Key.text(
-        "Whether the thread is rolled before or after heat treatment.",
-        "before",
-        ("before", "after"),
-    ),
+    "rolled": Key.text("Whether the thread is rolled before or after heat treatment.", "before", ("before", "after")),
     "fatigue": Key.text("Curve of fatigue in vibration: VDI 2230, or IEC 61400-6.", "vdi", ("vdi", "iec")),
 }

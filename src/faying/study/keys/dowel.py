@@ -17,10 +17,8 @@ def read_dowels(tables: list[Table], materials: Mapping[str, Material]) -> tuple
     """Read every [[dowel]]; a fault is noted where two have one name."""
     found = [_dowel(table, index, materials) for index, table in enumerate(tables)]
     dowels = tuple(dowel for dowel in found if dowel is not None)
-    names = [dowel.name for dowel in dowels]
-    for name in dict.fromkeys(names):
-        if names.count(name) > 1:
-            tables[0].faults.add(f"two dowels are called {name!r}; give each a name of its own")
+    if dowels:
+        tables[0].faults.note_alike("dowels", [dowel.name for dowel in dowels])
     return dowels
 
 

@@ -99,7 +99,6 @@ def _normal(value: Any, name: str) -> Point:
 
 
 def _numbers(value: Any, name: str) -> int | tuple[int, ...]:
-    """The number of a face, or those of several."""
     if not isinstance(value, list):
         return whole_number(value, name)
     if not value:

@@ -54,12 +54,9 @@ def read_geometry(top: Table) -> GeometryChoice:
     if step is not None:
         with suppress(ReadError):  # the mesher says which one is missing
             table.faults.files += files_of(step)[1:]
-    size = table.get("size")
-    sizes = _by_name(table, "face_size")
-    faces = _faces(table)
-    snap = table.get("snap")
-    bodies = {key: table.get(key) for key in ("leave_out", "unite")}
-    return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, snap=snap, **bodies)
+    size, sizes, faces = table.get("size"), _by_name(table, "face_size"), _faces(table)
+    given = {key: table.get(key) for key in ("snap", "leave_out", "unite")}
+    return GeometryChoice(step=step, size=size, face_size=sizes, face=faces, **given)
 
 
 def _by_name(table: Table, key: str) -> dict[str, Any]:
@@ -83,7 +80,6 @@ def _groups(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
 
 
 def _faces(table: Table) -> dict[str, Selector]:
-    """Take [geometry.face]."""
     found = {name: read_selector(one) for name, one in table.named("face").items()}
     return {name: selector for name, selector in found.items() if selector is not None}
 
@@ -99,10 +95,8 @@ def _meshed(table: Table) -> GeometryChoice:
         if key in table.data:
             table.faults.add(f"geometry.{key} is for a STEP file, and geometry.mesh is a finished mesh; leave it out")
             table.data.pop(key)
-    sets = _by_name(table, "sets")
-    faces = _faces(table)
-    snap = table.get("snap")
-    return GeometryChoice(mesh=mesh, unit=unit, sets=sets, face=faces, snap=snap)
+    sets, faces = _by_name(table, "sets"), _faces(table)
+    return GeometryChoice(mesh=mesh, unit=unit, sets=sets, face=faces, snap=table.get("snap"))
 
 
 def mesh_of(spec: GeometryChoice) -> Mesh:

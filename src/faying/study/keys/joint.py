@@ -95,9 +95,8 @@ def read_joints(top: Table) -> tuple[tuple[JointChoice, ...], tuple[JointChoice,
     """Take all [[joint]]: those that bolts press together, and those that are bonded."""
     every = [JointChoice.of(table, index) for index, table in enumerate(top.tables("joint"))]
     joints, bonds = (tuple(joint for joint in every if joint.bonded is bonded) for bonded in (False, True))
-    again = [joint.name for k, joint in enumerate(every) if joint.name in {one.name for one in every[:k]}]
-    if bonds and again:
-        top.faults.add(f"two joints are called {again[0]!r}; give each a name of its own")
+    if bonds:
+        top.faults.note_alike("joints", [joint.name for joint in every])
     return joints, bonds
 
 
@@ -143,7 +142,6 @@ JOINT: Declared = {
 
 
 def _in_form(name: str) -> Put:
-    """Puts a number in the form of a joint."""
     return lambda joint, value: replace(joint, form=(joint.form or Form()).with_value(name, value))
 
 

@@ -27,9 +27,8 @@ class LawChoice:
     model: str = AUTO
     counterbody: Literal["part", "rigid"] = "part"
     given: Mapping[str, object] = field(default_factory=dict)
-    misspelt_keys: frozenset[str] = field(
-        default=frozenset(), repr=False, compare=False
-    )  # with a fault of their own, or misspelt
+    # with a fault of their own, or misspelt
+    misspelt_keys: frozenset[str] = field(default=frozenset(), repr=False, compare=False)
 
     @classmethod
     def of(cls, table: Table) -> "LawChoice":
@@ -51,16 +50,15 @@ class LawChoice:
             elif (value := table.parameter(name, parameter)) is not None:
                 given[name] = value
         moved = _note_misplaced(table, kind)
-        misspelt_keys = {name for name in kind.law.entries() if name in table.data and name not in given}
-        for key in table.data:
-            if not table.known(key):
-                misspelt_keys |= set(get_close_matches(key, kind.law.entries(), n=1))
+        entries = kind.law.entries()
+        misspelt_keys = {name for name in entries if name in table.data and name not in given}
+        misspelt_keys.update(*(get_close_matches(key, entries, n=1) for key in table.data if not table.known(key)))
         # keys of another law: it may be meant, which needs no surface
         choice = cls(
             model=kind.label,
             counterbody=counterbody,
             given=given,
-            misspelt_keys=frozenset(kind.law.entries() if moved else misspelt_keys),
+            misspelt_keys=frozenset(entries if moved else misspelt_keys),
         )
         if not choice.missing:
             steel = CATALOGUE["45 steel"]  # faults of a law that needs no surface show at once, whatever the material

@@ -66,8 +66,7 @@ def _read(table: Table) -> Load | None:
 
 def _force(table: Table, label: str) -> Force | None:
     face = face_name(table, label)
-    force = table.get("force") or NOTHING
-    moment = table.get("moment") or NOTHING
+    force, moment = (table.get(key) or NOTHING for key in ("force", "moment"))
     place = table.get("point")
     return table.made(lambda: Force(face, force=force, moment=moment, point=place))
 
@@ -91,7 +90,6 @@ def _by_name(form: str, read: Callable[[Any, str], float]) -> Callable[[Any, str
 
 
 def _three(unit: str, says: str, default: Any = None) -> Key:
-    """Three components with units."""
     return Key.quantities(f"three components, for example {EXAMPLES[unit]}", unit, 3, says, default)
 
 
@@ -146,10 +144,7 @@ LOAD: Declared = {
     ),
     "combine": Key(
         FACTORS,
-        {
-            "type": "object",
-            "additionalProperties": {"type": "number", "minimum": -MAX_FACTOR, "maximum": MAX_FACTOR},
-        },
+        {"type": "object", "additionalProperties": {"type": "number", "minimum": -MAX_FACTOR, "maximum": MAX_FACTOR}},
         "Factors by the names of other cases, whose loads act here too.",
         {},
         read=_by_name(FACTORS, number),

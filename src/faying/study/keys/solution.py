@@ -80,11 +80,7 @@ MODES: Declared = {
         "hysteretic",
         ("hysteretic", "viscous"),
     ),
-    "solver": Key.text(
-        "Factorisation; the fastest one found where left out.",
-        None,
-        SOLVERS,
-    ),
+    "solver": Key.text("Factorisation; the fastest one found where left out.", None, SOLVERS),
     "shift_frequency": Key.quantity("Hz", "Frequency about which modes are sought; chosen where left out."),
     "levels": Key(
         'a list, such as ["0.1 m/s^2", "1 m/s^2", "10 m/s^2"], or []',
@@ -94,10 +90,7 @@ MODES: Declared = {
         read=_levels,
         unit="m/s^2",
     ),
-    "intervals": Key.truth(
-        "Whether each frequency has its interval, and waves are drawn where faces have them.",
-        True,
-    ),
+    "intervals": Key.truth("Whether each frequency has its interval, and waves are drawn where faces have them.", True),
 }
 TIGHTENING: Declared = {
     "order": Key("a list that names every bolt", listed(WORDS, 1), "The names of all bolts, in their order.", REQUIRED),

@@ -43,10 +43,7 @@ class SurfaceChoice:
     @classmethod
     def of(cls, table: Table) -> "SurfaceChoice":
         """Read one [surface] table."""
-        choice = cls(
-            **{key: table.get(key) for key in SURFACE if key != "counter"},
-            counter=_counter(table),
-        )
+        choice = cls(**{key: table.get(key) for key in SURFACE if key != "counter"}, counter=_counter(table))
         if "scan" not in table.data:
             missing = [k for k in ("D", "G", "scan_area") if k not in table.data]
             if missing:
@@ -194,7 +191,6 @@ class Surface:
 
 
 def _in_surface(name: str) -> Put:
-    """Puts a number in a surface."""
     return lambda surface, value: surface.with_number(name, value)
 
 

@@ -1,6 +1,7 @@
 """The hammer test of a study: a list of frequencies, or a file of modes or FRFs."""
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
@@ -155,7 +156,7 @@ def _file(table: Table, loads: tuple[float, ...]) -> HammerChoice:
         points=table.existing("points"),
         frame=table.get("frame"),
         length_unit=table.get("length_unit"),
-        direction=table.take("direction", _axis, None),
+        direction=table.take("direction", partial(text, choices=("x", "y", "z")), None),
         **{key: table.get(key) for key in ("quantity", "tolerance", "least_mac", "greatest_shift")},
     )
 
@@ -164,10 +165,6 @@ def _points(value: Any, name: str) -> tuple[tuple[float, float, float], ...]:
     if not isinstance(value, list) or not value:
         raise InputError(f"{name} should be a list of points, each three lengths")
     return tuple(point(one, name) for one in value)
-
-
-def _axis(value: Any, name: str) -> str:
-    return text(value, name, ("x", "y", "z"))
 
 
 FREQUENCIES = "one list of frequencies for each preload"

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from faying.materials import Material
 from faying.study.declaration.reader import Faults
 from faying.study.declaration.values import quantity
 from faying.study.keys.joint import JointChoice
-from faying.study.keys.varied import MODEL, Varied, number_of, rooms, short_keys, varied, words
+from faying.study.keys.varied import MODEL, Varied, number_of, owners, rooms, short_keys, varied, words
 
 OF_TEST = ("test", "discrepancy", "structure", "test_loss", "discrepancy_loss")
 DISTRIBUTIONS = {"distribution", "tightening", "scatter"}  # keys of a table that is one value
@@ -146,17 +147,14 @@ def read_uncertain(
     if table is None and not inside:
         return None
     reader = _Reader(known, faults)
-    for path, value in flat(table or {}):
+    takes = [partial(reader.take, ".".join(path), value) for path, value in flat(table or {})]
+    takes += [partial(reader.add, key, value, key, within=True) for key, value in inside.items()]
+    for take in takes:
         try:
-            reader.take(".".join(path), value)
+            take()
         except InputError as fault:
             faults.add(str(fault))
-    for key, value in inside.items():
-        try:
-            reader.add(key, value, key, within=True)
-        except InputError as fault:
-            faults.add(str(fault))
-    return reader.choice()
+    return UncertainChoice(inputs=tuple(reader.inputs.values()), **reader.rest)
 
 
 def flat(table: Mapping[str, Any], before: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
@@ -170,15 +168,10 @@ def flat(table: Mapping[str, Any], before: tuple[str, ...] = ()) -> Iterator[tup
 
 
 class _Reader:
-    """Collects the inputs, key by key."""
-
     def __init__(self, known: Known, faults: Faults) -> None:
         self.known, self.faults = known, faults
         self.inputs: dict[str, Input] = {}
         self.rest: dict[str, Any] = {}
-
-    def choice(self) -> UncertainChoice:
-        return UncertainChoice(inputs=tuple(self.inputs.values()), **self.rest)
 
     def take(self, key: str, value: Any) -> None:
         """Take one key of the table."""
@@ -228,13 +221,8 @@ class _Reader:
 
     def _check(self, number: Varied, where: str) -> None:
         """Raise InputError where a key names nothing that the study has."""
-        known = {
-            "joint": [joint.name for joint in self.known.joints],
-            "bolt": list(self.known.bolts),
-            "part": list(self.known.parts),
-            "material": sorted(set(self.known.parts.values())),
-        }
-        number.check_owner(known, where)
+        known = self.known
+        number.check_owner(owners((joint.name for joint in known.joints), known.bolts, known.parts), where)
         if number.room == "bolt" and number.name == "preload" and self.known.loads > 1:
             raise InputError(
                 f"{where}: the study has {self.known.loads} preloads; let a factor on all of them scatter, for example "

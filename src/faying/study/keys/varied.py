@@ -1,6 +1,6 @@
 """The numbers of a study that may vary in sweeps and scatter, gathered from the declarations of its keys."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal, final
@@ -112,14 +112,15 @@ def varied(key: str) -> Varied | None:
             continue
         place = declared.varies.place if declared.varies is not None else ""
         return Varied(
-            room=room,
-            owner=owner,
-            name=name,
-            parameter=declared.value,
-            place=place or name,
-            put=declared.put(name),
+            room=room, owner=owner, name=name, parameter=declared.value, place=place or name, put=declared.put(name)
         )
     return None
+
+
+def owners(joints: Iterable[str], bolts: Iterable[str], parts: Mapping[str, str]) -> dict[str, list[str]]:
+    """Names that keys may have in their middle, by table; parts: the material of each part."""
+    found = {"joint": list(joints), "bolt": list(bolts), "part": list(parts)}
+    return found | {"material": sorted(set(parts.values()))}
 
 
 def number_of(key: str) -> Varied:

@@ -14,9 +14,8 @@ from faying.study.vibration import FASTEST, FORM, Excitation
 def read_vibrations(tables: Sequence[Table]) -> tuple[Excitation, ...]:
     """Read all [[vibration]]; a fault is noted where two share a name."""
     found = [one for one in map(_read, tables) if one is not None]
-    names = [one.name for one in found]
-    for name in dict.fromkeys(name for name in names if names.count(name) > 1):
-        tables[0].faults.add(f"two vibrations are called {name!r}; give each a name of its own")
+    if found:
+        tables[0].faults.note_alike("vibrations", [one.name for one in found])
     return tuple(found)
 
 
@@ -64,8 +63,7 @@ VIBRATION: Declared = {
         "columns frequency and psd.",
     ),
     "sine": _table(
-        "sine",
-        "Amplitude of a sine sweep, in the same form; the columns of a file are frequency and amplitude.",
+        "sine", "Amplitude of a sine sweep, in the same form; the columns of a file are frequency and amplitude."
     ),
     "direction": Key.direction("Along which the supports move, or the force acts.", (0.0, 0.0, 1.0)),
     "face": one_face("Face that the force is spread over; without face and point all supports move together."),
