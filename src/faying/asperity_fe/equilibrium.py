@@ -14,7 +14,8 @@ import numpy as np
 
 from faying.asperity_fe.body import Balance, Body, CapState
 from faying.errors import NotConverged
-from faying.numerics.solve import Repeatable, factorise
+from faying.numerics.pardiso import Pardiso
+from faying.numerics.solve import Factorisation, factorise
 from faying.typing import Array, Index
 
 TOLERANCE = 1e-5  # unbalanced force over the forces that press
@@ -36,15 +37,15 @@ class CapSolver:
 
     def __init__(self, name: str | None = None) -> None:
         self._name = name
-        self._factor: Repeatable | None = None
+        self._factor: Factorisation | None = None
         self.factorisations = 0
 
     def __call__(self, matrix: Any, right: Array) -> Array:
         """Solve with `matrix`, whose pattern is that of the first one."""
-        if self._factor is None:
-            self._factor = factorise(matrix, self._name)
-        else:
+        if isinstance(self._factor, Pardiso):
             self._factor = self._factor.again(matrix)
+        else:
+            self._factor = factorise(matrix, self._name)
         self.factorisations += 1
         return self._factor.solve(right)
 

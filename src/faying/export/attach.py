@@ -21,6 +21,7 @@ from faying.fe.sides import face_centre
 from faying.joint.joint_law import JointLaw
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.joint.preload_case import preload_index
+from faying.joint.support_check import checked_preload
 from faying.materials import Material
 from faying.misuse import checked_call
 from faying.notes import percent
@@ -305,8 +306,7 @@ def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> Iterator
         every = mesh.face_nodes(name)
         lost = mesh.numbers[np.setdiff1d(every, nodes[values != 0])]
         if len(lost):
-            some = few(lost)
-            yield f"{len(lost)} of {len(every)} nodes of {name!r} have no partner within the tolerance: {some}"
+            yield f"{len(lost)} of {len(every)} nodes of {name!r} have no partner within the tolerance: {few(lost)}"
     gap = float(np.abs(interface.gap).max())
     if gap > TOUCHING * mesh.size:
         yield (
@@ -318,24 +318,18 @@ def _apart(mesh: Mesh, faces: tuple[str, str], interface: Interface) -> Iterator
 def _materials(study: Study, mesh: Mesh) -> dict[str, Material]:
     """Material of every part: by the study's name for it, or the only one that the study uses."""
     used = set(study.parts.values())
-    out = {}
-    for part in mesh.parts:
-        if part in study.parts:
-            out[part] = study.materials[study.parts[part]]
-        elif len(used) == 1:
-            out[part] = study.materials[next(iter(used))]
-        else:
-            raise InputError(
-                f"[part] of the study has no entry for {part!r}, which is in the model, and uses several materials; "
-                f"add [part.{part}]"
-            )
-    return out
+    only = next(iter(used), "")
+    lacking = [part for part in mesh.parts if part not in study.parts]
+    if lacking and len(used) != 1:
+        raise InputError(
+            f"[part] of the study has no entry for {lacking[0]!r}, which is in the model, and uses several materials; "
+            f"add [part.{lacking[0]}]"
+        )
+    return {part: study.materials[study.parts.get(part, only)] for part in mesh.parts}
 
 
 def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
     """JointLaw and pressure [Pa] at the points of the interface under the study's bolts."""
-    from faying.joint.support_check import checked_preload
-
     loads = study.loads
     if preload is None and len(loads) > 1:
         known = ", ".join(one.name for one in study.preloads)
@@ -347,17 +341,10 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
             "before; faying condense takes it"
         )
     structure = structure_of(study, mesh, surfaces_of(study))
-    solved_preload = checked_preload(
-        structure,
-        structure.assembly(solver=study.modes.solver),
-        study.preloads[number],
-    )
+    state = checked_preload(structure, structure.assembly(solver=study.modes.solver), study.preloads[number])
     place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
-    return (
-        structure.under(solved_preload).joints[place].law,
-        solved_preload.pressures[place],
-        f"of the study's bolts at {units.show(loads[number], 'N')}",
-    )
+    origin = f"of the study's bolts at {units.show(loads[number], 'N')}"
+    return structure.under(state).joints[place].law, state.pressures[place], origin
 
 
 def _pairs(interface: Interface, law: JointLaw, pressure: Array, coupling: str) -> tuple[NodePairs, Array]:

@@ -13,6 +13,7 @@ from faying.case.case import Case, Progress
 from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
 from faying.errors import InputError, NotConverged
 from faying.fe.interface import Interface
+from faying.joint.assembled_parts import unknowns_of
 from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.springs import Springs
@@ -164,16 +165,14 @@ def condensed_modes(
         NotConverged: the modes are not found.
     """
     joint = CondensedJoint.of(springs[number])
-    others = [s.stiffness() for k, s in enumerate(springs) if k != number]
     K, M = structure.dynamic_matrices
-    for other in others:
-        K = K + constrain(other, structure.fixed, 0.0)
+    others = [s.stiffness() for k, s in enumerate(springs) if k != number]
+    K = sum((constrain(other, structure.fixed, 0.0) for other in others), K)
     if tie == "rigid":
         return _rigid(structure, K, M, joint, number, count, solver)
     spread = joint.mean.copy()
     spread[structure.fixed] = 0.0
-    found = _updated(K, M, spread, joint.stiffness, count, structure.shift_frequency, solver)
-    frequencies, shapes = found
+    frequencies, shapes = _updated(K, M, spread, joint.stiffness, count, structure.shift_frequency, solver)
     motion = np.asarray(np.linalg.solve(joint.stiffness, spread.T @ shapes))
     return CondensedModes(frequencies=frequencies, loss_factors=_factors(motion, joint, frequencies), shapes=shapes)
 
@@ -230,7 +229,7 @@ def _rigid(
     for face, nodes in zip(structure.joints[number].faces, face_nodes, strict=True):
         if np.isin(nodes, supported).any():
             raise InputError(f"a support holds some of the face {face!r}, which rigid ties would move")
-    tied = np.concatenate([(3 * nodes[:, None] + np.arange(3)).ravel() for nodes in face_nodes])
+    tied = unknowns_of(np.concatenate(face_nodes))
     free = np.setdiff1d(np.arange(mesh.unknowns), tied)
     blocks = [csr_array(carried(mesh.points[nodes] - joint.point).reshape(-1, 6)) for nodes in face_nodes]
     rows = csr_array((np.ones(len(tied)), (tied, np.arange(len(tied)))), shape=(mesh.unknowns, len(tied)))
@@ -379,7 +378,6 @@ class Condensed(Summary):
 
     def to_dict(self) -> dict[str, Any]:
         """Everything in SI units, for JSON; None in place of NaN."""
-
         return {
             "joint": self.name,
             "load": {"unit": "N", "values": self.load},

@@ -14,6 +14,7 @@ from faying.export.attach import Attachment
 from faying.fe.elasticity import rigid_motions
 from faying.file_kinds import STUDY, kind_of
 from faying.files import together, write_arrays, write_text
+from faying.joint.assembled_parts import compact_shift
 from faying.joint.modal import MAX_MODES
 from faying.joint.support_check import checked_preload
 from faying.misuse import checked_call
@@ -217,7 +218,6 @@ def modes_with_joint(
         stiffness_unit, mass_unit: Units of the entries, such as "N/mm" and "t".
         mass, dofs: With a .mtx: file of the mass, and of "node direction" of each row.
         count: How many elastic modes.
-        solver: What factorises the matrices, by the names of a study; chosen where None.
 
     Returns:
         The modes, and how many rigid motions nothing resists.
@@ -238,8 +238,7 @@ def modes_with_joint(
             f"the matrices leave {still} of the six rigid motions free; take them from the model without supports, or "
             "fixed in all directions"
         )
-    speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in attachment.materials.values()]
-    shift = 0.02 * max(speeds) / mesh.size
+    shift = compact_shift(attachment.materials.values(), mesh.size)
     check_modes(count + still + SPARE, K.shape[0])
     found = lowest_modes(K, M, count + still + SPARE, shift_frequency=shift)
     return damped_modes(found, K, M, C, rigid=still, count=count), still

@@ -1,6 +1,6 @@
 """A bolted structure without the laws of its joints: what is assembled once for all laws and preloads."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -134,17 +134,15 @@ class AssembledParts:
     @cached_property
     def rigid(self) -> Array:
         """Rigid motions of the whole that no support resists (unknowns, up to 6)."""
-        if any(support.stiffness is not None for support in self.supports):
-            springs = added(None, [support.springs(self.mesh) for support in self.supports])
-            all_six = free_motions(self._motions, self.fixed)
-            if not all_six.shape[1]:
-                return all_six
-            values, vectors = np.linalg.eigh(all_six.T @ (springs @ all_six))
-            # beside what the springs resist of any motion, fixed faces aside: the rest is rounding
-            whole = self._motions
-            most = float(np.linalg.eigvalsh(whole.T @ (springs @ whole)).max())
-            return np.asarray(all_six @ vectors[:, values < 1e-10 * most])
-        return free_motions(self._motions, self.fixed)
+        every = self._motions
+        free = free_motions(every, self.fixed)
+        springs = added(None, [support.springs(self.mesh) for support in self.supports])
+        if springs is None or not free.shape[1]:
+            return free
+        values, vectors = np.linalg.eigh(free.T @ (springs @ free))
+        # beside what the springs resist of any motion, fixed faces aside: the rest is rounding
+        most = float(np.linalg.eigvalsh(every.T @ (springs @ every)).max())
+        return np.asarray(free @ vectors[:, values < 1e-10 * most])
 
     @property
     def _motions(self) -> Array:
@@ -186,8 +184,12 @@ class AssembledParts:
     @cached_property
     def shift_frequency(self) -> float:
         """A frequency below the first elastic mode of any compact body of this size [Hz]: 0.02 c/size."""
-        speeds = [(m.E / (m.density or np.inf)) ** 0.5 for m in self.materials.values()]
-        return float(0.02 * max(speeds) / self.mesh.size)
+        return compact_shift(self.materials.values(), self.mesh.size)
+
+
+def compact_shift(materials: Iterable[Solid], size: float) -> float:
+    """A frequency below the first elastic mode of any compact body of a size [m]: 0.02 c/size [Hz]."""
+    return float(0.02 * max((m.E / (m.density or np.inf)) ** 0.5 for m in materials) / size)
 
 
 def unknowns_of(nodes: Index) -> Index:

@@ -81,18 +81,16 @@ class BoltedStructure(Summary):
             joint.fitted(mesh, of_parts, number) if isinstance(joint, Joint) else joint
             for number, joint in enumerate(joints, start=1)
         )
-        values = {
-            "mesh": mesh,
-            "materials": of_parts,
-            "joints": placed,
-            "bolts": tuple(bolts),
-            "supports": tuple(supports),
-            "masses": tuple(masses),
-            "dowels": tuple(dowels),
-            "assembled": assembled,
-        }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        vars(self).update(
+            mesh=mesh,
+            materials=of_parts,
+            joints=placed,
+            bolts=tuple(bolts),
+            supports=tuple(supports),
+            masses=tuple(masses),
+            dowels=tuple(dowels),
+            assembled=assembled,
+        )
         self._check()
 
     def _check(self) -> None:
@@ -104,22 +102,16 @@ class BoltedStructure(Summary):
         if twice:
             raise InputError(f"part {', '.join(twice)} is two solid bolts; a part is drawn in once, with one preload")
         for joint in self.joints:
-            fault = nothing_moves(joint.name, [face for face in joint.faces if self.mesh.is_shared(face)])
-            if fault:
+            if fault := nothing_moves(joint.name, [face for face in joint.faces if self.mesh.is_shared(face)]):
                 raise InputError(fault)
         faces += [face for bolt in solid for face in bolt.faces if self.mesh.is_shared(face)]
         for bolt in solid:
-            apart = seat_apart(bolt, faces)
-            if apart:
-                raise InputError(apart)
-        loose = loose_parts(self.mesh.bodies, met)
-        if loose:
-            raise InputError(loose)
-        for what, names in (
-            ("joints", [joint.name for joint in self.joints]),
-            ("bolts", [bolt.name for bolt in self.bolts]),
-            ("dowels", [dowel.name for dowel in self.dowels]),
-        ):
+            if fault := seat_apart(bolt, faces):
+                raise InputError(fault)
+        if fault := loose_parts(self.mesh.bodies, met):
+            raise InputError(fault)
+        for what, things in (("joints", self.joints), ("bolts", self.bolts), ("dowels", self.dowels)):
+            names = [thing.name for thing in things]
             again = sorted({name for name in names if names.count(name) > 1})
             if again:
                 raise InputError(f"two {what} are called {again[0]!r}; give each a name of its own")
@@ -282,15 +274,16 @@ class BoltedStructure(Summary):
             friction: Coefficient of each joint [-].
             gaps: Gap of each joint [m] (q,) before any load.
         """
-        joints = list(self.joints)
-        for k, joint in enumerate(joints):
-            joints[k] = replace(
+        joints = tuple(
+            replace(
                 joint,
                 law=joint.law if laws is None else laws[k],
                 friction=joint.friction if friction is None else friction[k],
                 interface=joint.interface if gaps is None else replace(joint.interface, gap=gaps[k]),
             )
-        return replace(self, joints=tuple(joints))
+            for k, joint in enumerate(self.joints)
+        )
+        return replace(self, joints=joints)
 
     def under(self, preload: PreloadState) -> Self:
         """Return the structure with the laws that its joints have under a preload: those of what was carried before."""
@@ -328,12 +321,11 @@ class BoltedStructure(Summary):
 
     def assembly(self, *, solver: str | None = None) -> PreloadProblem:
         """Return the preload problem of this structure."""
-        pairs = [(joint.interface, joint.law) for joint in self.joints]
         problem = PreloadProblem(
             self.supported_stiffness,
             self.matrices[1],
             self.rigid,
-            pairs,
+            [(joint.interface, joint.law) for joint in self.joints],
             shift_frequency=self.shift_frequency,
             solver=self.solver(solver),
             friction=[joint.friction for joint in self.joints],
@@ -347,7 +339,7 @@ class BoltedStructure(Summary):
 
         The loss is the imaginary part of the stiffness [N/m], or where viscous the damping [N s/m] of the JK paper.
         """
-        stiffness = added(self.dynamic_matrices[0], [self.joint_stiffness(springs)])
+        stiffness = self.dynamic_matrices[0] + self.joint_stiffness(springs)
         return stiffness, self.joint_loss(springs, viscous=viscous)
 
     def joint_stiffness(self, springs: Sequence[Springs[Interface]]) -> Any:
@@ -356,9 +348,7 @@ class BoltedStructure(Summary):
 
     def joint_loss(self, springs: Sequence[Springs[Interface]], *, viscous: bool = False) -> Any:
         """The loss of the springs of all joints, as `coupled` gives it."""
-        weight = float(self.matrices[1].sum()) / 3 if viscous else 0.0
-        lossy = [s for s in springs if s.lossy]
-        losses = [s.viscous(weight) if viscous else s.loss() for s in lossy]
+        losses = [s.viscous(self.mass) if viscous else s.loss() for s in springs if s.lossy]
         return added(self._nothing, [constrain(loss, self.fixed, 0.0) for loss in losses])
 
     @property
@@ -395,8 +385,8 @@ class BoltedStructure(Summary):
 
     def outline(self) -> tuple[Index, Index]:
         """Nodes of the outer surface and triangles between them (t, 3), for pictures."""
-        found = self.surface()
-        return found.nodes, found.triangles
+        surface = self.surface()
+        return surface.nodes, surface.triangles
 
     def surface(self) -> Outline:
         """The outer surface with parts and faces; a triangle on several faces belongs to that of a joint."""

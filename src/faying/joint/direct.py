@@ -6,7 +6,16 @@ from typing import Any, final
 import numpy as np
 
 from faying.fe.interface import Interface, Motion
-from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StickSlip, admissible, check_balance
+from faying.joint.equilibrium import (
+    Equilibrium,
+    PreloadState,
+    Step,
+    StickSlip,
+    admissible,
+    check_balance,
+    tangent_springs,
+    uniform_contact,
+)
 from faying.joint.joint_law import JointLaw
 from faying.joint.modal import EXACT, ModalProblem, Vibration, in_order_of
 from faying.joint.preload_case import PreloadCase
@@ -55,15 +64,8 @@ class PlainPreload(Equilibrium):
 
     def _start(self, load: Array) -> Array:
         """Under springs that are tangent to p(approach) where each joint has the mean pressure of the load."""
-        total, stiffness, push = float(np.abs(load).sum()) / 4, self.stiffness, load
-        for joint, law in self.joints:
-            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
-            pressure = np.full(len(joint.weights), mean)
-            k_n, k_t = law.stiffness(pressure)
-            offset = pressure - k_n * (law.approach(float(mean)) + joint.gap)
-            stiffness = stiffness + joint.springs(k_n, k_t)
-            push = push + joint.forces(offset, np.zeros((len(offset), 2)))
-        return self._solved(stiffness, push)
+        _, springs, push = tangent_springs(self.joints, uniform_contact(self.joints, load), load)
+        return self._solved(sum(springs, self.stiffness), push)
 
     def _direction(self, u: Array, force: Array, slip_states: Sequence[StickSlip], accuracy: float) -> Step:
         from scipy.sparse import block_diag

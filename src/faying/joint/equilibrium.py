@@ -21,6 +21,7 @@ from faying.numerics.product import product_of_sizes
 from faying.typing import Array, Index, Mask
 
 Step = tuple[Array, int]  # of Newton's iteration, and how many inner steps it took
+Contact = Sequence[tuple[Array, Array]]  # opening [m] and pressure [Pa] at the points (q,) of each joint
 
 DRAWN_BACK_FROM = 10.0  # imbalance over the load from which a start is drawn back
 ROUNDED = 1e-7  # imbalance from which it is asked whether rounding lets it fall further
@@ -41,14 +42,14 @@ class PreloadState:
     joint under the preloads before, () on first loading.
     """
 
-    pressures: tuple[Array, ...]
-    openings: tuple[Array, ...]
-    slipping: tuple[float, ...]
     displacement: Array
-    imbalance: float
-    newton_steps: int
-    inner_steps: int
-    factorisations: int
+    pressures: tuple[Array, ...] = ()
+    openings: tuple[Array, ...] = ()
+    slipping: tuple[float, ...] = ()
+    imbalance: float = 0.0
+    newton_steps: int = 0
+    inner_steps: int = 0
+    factorisations: int = 0
     bolt_forces: tuple[float, ...] = ()
     carried: tuple[Array, ...] = ()
 
@@ -151,16 +152,7 @@ class Equilibrium(ABC):
         """
         if not np.any(load):
             if not self.joints:  # nothing pulls the parts, and nothing is there to be pressed
-                return PreloadState(
-                    pressures=(),
-                    openings=(),
-                    slipping=(),
-                    displacement=np.zeros(load.shape),
-                    imbalance=0.0,
-                    newton_steps=0,
-                    inner_steps=0,
-                    factorisations=0,
-                )
+                return PreloadState(displacement=np.zeros(load.shape))
             raise InputError("no bolt pulls: the load is zero everywhere; give at least one bolt a preload")
         self._check_load(load)
         self.stiffness = self.parts if shanks is None else self.parts + shanks
@@ -283,13 +275,15 @@ class Equilibrium(ABC):
         return self._known[1]
 
     def _stick_slip(self, u: Array) -> list[StickSlip]:
-        slip_states = []
-        for (_, p, _), (_, law), friction, anchor in zip(
-            self._state(u), self.joints, self.friction, self._anchors, strict=True
-        ):
-            k_t, limit = law.stiffness(p, tabulated=True)[1], None if friction is None else friction * p
-            slip_states.append(StickSlip(k_t=k_t, limit=limit, anchor=anchor))
-        return slip_states
+        known = zip(self._state(u), self.joints, self.friction, self._anchors, strict=True)
+        return [
+            StickSlip(
+                k_t=law.stiffness(p, tabulated=True)[1],
+                limit=None if friction is None else friction * p,
+                anchor=anchor,
+            )
+            for (_, p, _), (_, law), friction, anchor in known
+        ]
 
     def _out_of_balance(self, u: Array, load: Array, slip_states: Sequence[StickSlip]) -> Array:
         force = load - self.stiffness @ u
@@ -300,12 +294,10 @@ class Equilibrium(ABC):
 
     def _tangents(self, u: Array, slip_states: Sequence[StickSlip]) -> list[tuple[Any, Array, Array]]:
         """For each joint: interface, normal stiffness (q,) and tangential tangent (q, 2, 2), both times the area."""
-        out = []
-        for (move, _, k_n), (interface, _), slip_state in zip(self._state(u), self.joints, slip_states, strict=True):
-            out.append(
-                (interface, interface.weights * k_n, interface.weights[:, None, None] * slip_state.tangent(move[:, 1:]))
-            )
-        return out
+        return [
+            (interface, interface.weights * k_n, interface.weights[:, None, None] * slip_state.tangent(move[:, 1:]))
+            for (move, _, k_n), (interface, _), slip_state in zip(self._state(u), self.joints, slip_states, strict=True)
+        ]
 
     def _line_search(self, u: Array, step: Array, load: Array, slip_states: Sequence[StickSlip]) -> Array:
         """The displacement along a step at which the slope of the energy has fallen to a fraction.
@@ -362,6 +354,29 @@ class Equilibrium(ABC):
                 return at(middle)
             low, high = (middle, high) if value < 0 else (low, middle)
         return at((low + high) / 2, known=False)
+
+
+def uniform_contact(joints: Sequence[tuple[Any, JointLaw]], load: Array) -> Contact:
+    """Opening and pressure of every joint at the mean pressure that a load [N] (n,) would give it."""
+    total, contact = float(np.abs(load).sum()) / 4, []
+    for joint, law in joints:
+        mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
+        contact.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
+    return contact
+
+
+def tangent_springs(
+    joints: Sequence[tuple[Any, JointLaw]], contact: Contact, load: Array
+) -> tuple[list[tuple[Array, Array]], list[Any], Array]:
+    """Springs tangent to p(approach) at some contact: per area (k_n, k_t) [Pa/m], as matrices, and what is to be borne.
+
+    The last is the load [N] (n,) with what springs that are longer than the gap push.
+    """
+    per_area = [law.stiffness(pressure) for (_, law), (_, pressure) in zip(joints, contact, strict=True)]
+    for (joint, _), (opening, pressure), (k_n, _) in zip(joints, contact, per_area, strict=True):
+        offset = np.where(pressure > 0, pressure + k_n * (opening - joint.gap), 0.0)
+        load = load + joint.forces(offset, np.zeros((len(offset), 2)))
+    return per_area, [joint.springs(*k) for (joint, _), k in zip(joints, per_area, strict=True)], load
 
 
 def admissible(force: Array, rigid: Array, fixed: Index) -> Array:

@@ -78,17 +78,12 @@ def _open_zone(ax: Any, grid: tuple[Any, ...], contact: Array) -> None:
     if contact.min() >= EDGE:
         return
     if contact.max() <= EDGE:
-        ax.tripcolor(*grid, np.zeros(len(contact)), shading="gouraud", cmap=_one(OPEN), rasterized=True)
+        from matplotlib.colors import ListedColormap
+
+        ax.tripcolor(*grid, np.zeros(len(contact)), shading="gouraud", cmap=ListedColormap([OPEN]), rasterized=True)
         return
     ax.tricontourf(*grid, contact, levels=[-1.0, EDGE], colors=[OPEN])
     ax.tricontour(*grid, contact, levels=[EDGE], colors=[INK], linewidths=0.7)
-
-
-def _one(shade: str) -> Any:
-    """A colour map of one colour."""
-    from matplotlib.colors import ListedColormap
-
-    return ListedColormap([shade])
 
 
 def in_plane(places: Array) -> tuple[Array, tuple[str, str]]:

@@ -14,7 +14,7 @@ from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
-from faying.form.waviness import LaidWaves, Waviness
+from faying.form.waviness import LaidWaves
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
 from faying.materials import MOST_FRICTION
@@ -79,21 +79,21 @@ class Joint:
                 "for example 0.4"
             )
         check_friction(called, friction)
-        values = {
-            "faces": (faces[0], faces[1]),
-            "law": law,
-            "name": name,
-            "tangential": tangential,
-            "per_node": per_node,
-            "scan_area": None if scan_area is None else number(scan_area, f"{called}: scan_area", "m^2", least=0),
-            "friction": friction,
-            "search_distance": (
-                None if search_distance is None else number(search_distance, f"{called}: search_distance", "m", least=0)
-            ),
-            "form": form,
-        }
-        for key, value in values.items():
-            object.__setattr__(self, key, value)
+        if scan_area is not None:
+            scan_area = number(scan_area, f"{called}: scan_area", "m^2", least=0)
+        if search_distance is not None:
+            search_distance = number(search_distance, f"{called}: search_distance", "m", least=0)
+        vars(self).update(
+            faces=(faces[0], faces[1]),
+            law=law,
+            name=name,
+            tangential=tangential,
+            per_node=per_node,
+            scan_area=scan_area,
+            friction=friction,
+            search_distance=search_distance,
+            form=form,
+        )
 
     def fitted(self, mesh: Mesh, materials: Mapping[str, Solid], number: int = 1) -> "FittedJoint":
         """Return the joint in its place.
@@ -148,8 +148,7 @@ def known_face(mesh: Mesh, face: str, what: str) -> None:
 
 def _material_notes(name: str, law: ContactLaw, rough: Solid, other: Solid) -> list[Note]:
     """Say where the law was made for other materials than those of the parts, as far as it knows them."""
-    found = getattr(law, "pair", None)
-    modulus = getattr(found, "E_star", None)
+    modulus = getattr(getattr(law, "pair", None), "E_star", None)
     if modulus is None:
         return []
     here = 1 / sum((1 - m.nu**2) / m.E for m in (rough, other))
@@ -244,19 +243,17 @@ def each_pair_once(joints: Mapping[str, tuple[str, str]]) -> None:
 def with_form(
     interface: Interface, mesh: Mesh, faces: tuple[str, str], form: Form, name: str
 ) -> tuple[Interface, list[Note]]:
-    """A joint of two named faces with their form added to its gap, and notes on the waves of that form."""
-    notes: list[Note] = []
-    if form.waviness is not None:
-        notes = wave_notes(name, form.waviness, FaceAxes.of(mesh, faces, interface, form.along))
-    return form.on(interface, mesh, faces), notes
+    """A joint of two named faces with their form added to its gap, and which waves are drawn or beyond the mesh.
 
-
-def wave_notes(name: str, waviness: Waviness, axes: FaceAxes) -> list[Note]:
-    """Which waves are drawn, and which of them the mesh does not carry. Raises InputError where they do not fit."""
-    laid = LaidWaves.of(waviness, axes)
+    Raises InputError where the waves do not fit.
+    """
+    if form.waviness is None:
+        return form.on(interface, mesh, faces), []
+    waviness = form.waviness
+    laid = LaidWaves.of(waviness, FaceAxes.of(mesh, faces, interface, form.along))
     text = f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw gives other frequencies. "
     text += f"faying sweep over joint.{name}.form.waviness_seed, or faying predict, says how far draws differ"
     notes = [Note(code="waves", joint=name, text=text)]
     if laid.missing_share > 0:
         notes.append(Note(code="waves-mesh", joint=name, text=f"{name}: {laid.mesh_limit()}"))
-    return notes
+    return form.on(interface, mesh, faces), notes

@@ -95,11 +95,9 @@ class LawTable:
     @cached_property
     def loss(self) -> tuple[Array, Array]:
         """Loss factors normal and tangential [-] there; 0 where the law predicts none."""
-        at, nothing = self.response, np.zeros(len(self.pressures))
-        return (
-            nothing if at.loss_n is None else at.loss_n,
-            nothing if at.loss_t is None else at.loss_t,
-        )
+        nothing = np.zeros(len(self.pressures))
+        n, t = (nothing if loss is None else loss for loss in (self.response.loss_n, self.response.loss_t))
+        return n, t
 
     @cached_property
     def loading(self) -> Array:
@@ -216,9 +214,9 @@ class JointLaw:
 
         It is the curve of `pressure` unless the law has a k_load of its own.
         """
-        return (
-            self.table.curve(self.scale * self.table.stiffness[0], "normal stiffness") if self.yields else self._curve
-        )
+        if not self.yields:
+            return self._curve
+        return self.table.curve(self.scale * self.table.stiffness[0], "normal stiffness")
 
     def answer(self, pressure: Array) -> Response:
         """What the law says at pressures [Pa]; beyond its ends, what it says there."""

@@ -5,14 +5,23 @@ joints, since only the joint changes; the factorisation is renewed when it has a
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.interface import Motion
 from faying.fe.vertices import VertexRestriction
-from faying.joint.equilibrium import Equilibrium, Step, StickSlip, admissible, check_balance
+from faying.joint.equilibrium import (
+    Contact,
+    Equilibrium,
+    Step,
+    StickSlip,
+    admissible,
+    check_balance,
+    tangent_springs,
+    uniform_contact,
+)
 from faying.joint.joint_law import JointLaw
 from faying.numerics.constraint import constrain
 from faying.numerics.shifted import Shifted
@@ -29,13 +38,6 @@ EARLY, LATE, SLOW = -0.5, -3.5, 4.8
 GUESSED = 1e-3  # imbalance of the equilibrium of the corners, which are wrong by far more
 ROUGH = 1e-2  # accuracy of the start of Newton's iteration where it is found by conjugate gradients
 FLAT = 1e-9  # curvature over that of the factor below which a direction costs no energy
-
-
-class Guess(NamedTuple):
-    """Where the joints are likely to end up: opening [m] and pressure [Pa] at the points of each; whether near it."""
-
-    joints: tuple[tuple[Array, Array], ...]
-    near: bool
 
 
 class PreloadProblem(Equilibrium):
@@ -87,14 +89,8 @@ class PreloadProblem(Equilibrium):
 
     def _start(self, load: Array) -> Array:
         """Displacement under springs that are tangent to p(approach) where the joints are likely to end up."""
-        guess = self._guess(load)
-        laid, springs, push = [], [], load
-        for (joint, law), (opening, pressure) in zip(self.joints, guess.joints, strict=True):
-            k_n, k_t = law.stiffness(pressure)
-            laid.append((k_n, k_t))
-            springs.append(joint.springs(k_n, k_t))
-            offset = np.where(pressure > 0, pressure + k_n * (opening - joint.gap), 0.0)
-            push = push + joint.forces(offset, np.zeros((len(offset), 2)))
+        of_corners = self._contact_of_corners(load)
+        per_area, springs, push = tangent_springs(self.joints, of_corners or uniform_contact(self.joints, load), load)
         push = self._admissible(push)
         if self.factor is not None:  # of a like state, taken from elsewhere
             parts = Shifted(stiffness=self.stiffness, mass=self._mass, shift=self._shift)
@@ -105,17 +101,17 @@ class PreloadProblem(Equilibrium):
             found, count = self._gradients(product, push, ROUGH)
             if count < AGED:
                 return found
-        self._factorise(springs, laid if guess.near else None)
+        self._factorise(springs, per_area if of_corners else None)
         return self._near(push)
 
-    def _guess(self, load: Array) -> Guess:
-        """Where the joints are likely to end up under a load: as the corners of the elements say.
+    def _contact_of_corners(self, load: Array) -> Contact | None:
+        """Where the joints end up under a load as the corners of the elements say; None where these do not tell.
 
         Only the corners move by themselves, a seventh of the unknowns or less. The parts are then too stiff in bending,
         and pressures right to some tenths.
         """
         if self.vertices is None:
-            return self._uniform_guess(load)
+            return None
         unknowns, spread = self.vertices.unknowns, self.vertices.spread
         coarse = PreloadProblem(
             self.vertices.of_matrix(self.stiffness),
@@ -130,16 +126,8 @@ class PreloadProblem(Equilibrium):
         try:
             found = coarse.solve(coarse._admissible(spread.T @ load), tolerance=GUESSED)
         except (NotConverged, InputError):
-            return self._uniform_guess(load)
-        return Guess(tuple(zip(found.openings, found.pressures, strict=True)), near=True)
-
-    def _uniform_guess(self, load: Array) -> Guess:
-        """Every joint at the mean pressure that the load would give it."""
-        total, joints = float(np.abs(load).sum()) / 4, []
-        for joint, law in self.joints:
-            mean = np.clip(total / joint.area, 10 * law.least_pressure, 0.5 * law.model.greatest_pressure)
-            joints.append((np.full(len(joint.weights), -law.approach(float(mean))), np.full(len(joint.weights), mean)))
-        return Guess(tuple(joints), near=False)
+            return None
+        return list(zip(found.openings, found.pressures, strict=True))
 
     def _factorise(self, springs: list[Any], factorised_springs: list[tuple[Array, Array]] | None) -> None:
         self.factor = None  # one at a time in memory
@@ -189,10 +177,9 @@ class PreloadProblem(Equilibrium):
         return bool(LATE < left < EARLY and self._rate > SLOW)
 
     def _renew(self, tangents: list[tuple[Any, Array, Array]]) -> None:
-        laid = []
-        for joint, k_n, k_t in tangents:
-            shear = np.trace(k_t, axis1=1, axis2=2) / 2
-            laid.append((k_n / joint.weights, shear / joint.weights))
+        laid = [
+            (k_n / joint.weights, np.trace(k_t, axis1=1, axis2=2) / 2 / joint.weights) for joint, k_n, k_t in tangents
+        ]
         self._factorise([joint.springs(*k) for (joint, _), k in zip(self.joints, laid, strict=True)], laid)
 
     def _gradients(self, product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = AGED) -> Step:

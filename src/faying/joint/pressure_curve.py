@@ -1,6 +1,6 @@
 """Pressure as a function of approach, from a stiffness known at many pressures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
 
@@ -122,14 +122,8 @@ class UnloadingCurve:
 
     def at(self, points: Mask) -> Self:
         """The curves of some of the points."""
-        return type(self)(
-            first=self.first,
-            log_v=self.log_v[points],
-            log_p=self.log_p[points],
-            slope=self.slope[points],
-            parted=self.parted[points],
-            turn=self.turn[points],
-        )
+        own = ("log_v", "log_p", "slope", "parted", "turn")
+        return replace(self, **{name: getattr(self, name)[points] for name in own})
 
     def pressure(self, approach: Array) -> tuple[Array, Array]:
         """Pressure [Pa] and its slope [Pa/m] at approaches [m] (q,) or (q, n); both 0 where the faces are apart."""

@@ -48,7 +48,8 @@ def shank_forces(
             torsion=-ends[3],
             across=frame_about(fitted.axis)[1:],
         )
-    across = _across(fitted)
+    line = fitted.seats[1] - fitted.seats[0]
+    across = frame_about(line / np.linalg.norm(line))[1:]
     moves = _section_moves(structure, fitted, across)
     layer = np.repeat(np.any(fitted.pull.reshape(-1, 3) != 0, axis=1), 3)
     # in the plane across the shank: nodes that the bolt shares with another part bear forces of that part, too
@@ -57,12 +58,6 @@ def shank_forces(
     if heat is not None:
         work = work - moves.T @ heat
     return ShankForces(moments=work[None, 2:4], shear=work[:2], torsion=work[4], across=across)
-
-
-def _across(fitted: FittedSolidBolt) -> Array:
-    """Two unit vectors (2, 3) across a meshed bolt."""
-    axis = fitted.seats[1] - fitted.seats[0]
-    return frame_about(axis / np.linalg.norm(axis))[1:]
 
 
 def _section_moves(structure: BoltedStructure, fitted: FittedSolidBolt, across: Array) -> Array:

@@ -185,9 +185,7 @@ class State(Summary):
             )
         if len(joints) > 2:
             rows["more joints"] = str(len(joints) - 2)
-        rows |= self.modes.rows(7)
-        rows |= notes_row(self.notes)
-        return head, rows
+        return head, rows | self.modes.rows(7) | notes_row(self.notes)
 
     @checked_call
     def plot(self, joint: str | None = None, ax: "Axes | None" = None) -> "Axes":
@@ -234,7 +232,11 @@ def solve_structure(
     engine: str,
 ) -> tuple[State, ...]:
     """Solve a structure under preloads, one after another; see `Structure.solve`."""
-    choice = ModesChoice(count=_count(modes), damping=damping, solver=_solver(solver))
+    if not 1 <= modes <= MAX_MODES:
+        raise InputError(f"modes = {shortened(modes)}; give how many elastic modes, 1 to {MAX_MODES:,}")
+    if solver is not None and solver not in SOLVERS:
+        raise InputError(f"solver = {shortened(solver)}; the solvers are {', '.join(map(repr, SOLVERS))}")
+    choice = ModesChoice(count=int(modes), damping=damping, solver=solver)
     structure = structure.loaded_before(())
     cases = with_history([preload_case(structure, one, order) for one in preloads])
     solving = engine_for(engine, ModalProblem(structure=structure, choice=choice), cases)
@@ -292,18 +294,6 @@ def bolt_forces(
         wrong = f"names bolt {unknown[0]!r}, which is not there" if unknown else f"misses bolt {lacking[0]!r}"
         raise InputError(f"preload {wrong}; the bolts are {', '.join(map(repr, names))}")
     return tuple(number(preload[name], f"preload of bolt {name!r}", "N", least=0) for name in names)
-
-
-def _count(modes: int) -> int:
-    if not 1 <= modes <= MAX_MODES:
-        raise InputError(f"modes = {shortened(modes)}; give how many elastic modes, 1 to {MAX_MODES:,}")
-    return int(modes)
-
-
-def _solver(solver: str | None) -> str | None:
-    if solver is not None and solver not in SOLVERS:
-        raise InputError(f"solver = {shortened(solver)}; the solvers are {', '.join(map(repr, SOLVERS))}")
-    return solver
 
 
 def _order(structure: BoltedStructure, order: Sequence[str] | None) -> tuple[int, ...] | None:

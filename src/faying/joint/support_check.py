@@ -8,6 +8,8 @@ import numpy as np
 
 from faying.errors import InputError, NotConverged
 from faying.fe.elasticity import rigid_motions
+from faying.fe.solids import bodies_of
+from faying.joint.assembled_parts import unknowns_of
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import Equilibrium, PreloadState
 from faying.joint.preload_case import PreloadCase
@@ -61,30 +63,18 @@ def open_joints(structure: BoltedStructure, pressures: Sequence[Array]) -> list[
 
 def check_contact(structure: BoltedStructure, pressures: Sequence[Array], openings: Sequence[Array]) -> None:
     """Raise InputError where parts are left that no contact, shank or support connects with the rest."""
-    owner = structure.mesh.face_part
-    group = {part: part for part in structure.mesh.parts}
-
-    def meet(first: str, second: str) -> None:
-        old, new = group[first], group[second]
-        for part, name in group.items():
-            if name == old:
-                group[part] = new
-
+    mesh, owner = structure.mesh, structure.mesh.face_part
     apart = set(open_joints(structure, pressures))
-    for joint in structure.joints:
-        if joint.name not in apart:
-            meet(*(owner[face] for face in joint.faces))
-    for bolt in structure.bolts:
-        if bolt.diameter is not None:
-            meet(*(owner[face] for face in bolt.faces))
-    for pair in structure.mesh.bonded:
-        meet(*pair)
+    faces = [joint.faces for joint in structure.joints if joint.name not in apart]
+    faces += [bolt.faces for bolt in structure.bolts if bolt.diameter is not None]
     supported = [owner[support.face] for support in structure.supports]
-    for part in supported[1:]:
-        meet(supported[0], part)
-    sizes = {name: sum(len(structure.mesh.part_nodes(p)) for p in group if group[p] == name) for name in group.values()}
-    main = group[supported[0]] if supported else max(sizes, key=lambda name: sizes[name])
-    loose = [part for part in group if group[part] != main]
+    met = [(owner[first], owner[second]) for first, second in faces] + [(supported[0], part) for part in supported]
+    groups = bodies_of(tuple(mesh.parts), [*met, *mesh.bonded])
+    if supported:
+        main = next(group for group in groups if supported[0] in group)
+    else:
+        main = max(groups, key=lambda group: sum(len(mesh.part_nodes(part)) for part in group))
+    loose = [part for part in mesh.parts if part not in main]
     if not loose:
         return
     nearest = {
@@ -108,29 +98,25 @@ def check_motions(structure: BoltedStructure, modes: Modes) -> None:
     part = _mover(structure, modes.shapes[:, free])
     raise InputError(
         f"{len(free)} motions cost no energy and {rigid_count} of them move the structure as one: part {part!r} moves "
-        "freely against the others (at "
-        f"{modes.frequencies[free].max():.2g} Hz). Its joints resist only some directions; give "
-        "the law a tangential stiffness, a joint more, or a support"
+        f"freely against the others (at {modes.frequencies[free].max():.2g} Hz). Its joints resist only some "
+        "directions; give the law a tangential stiffness, a joint more, or a support"
     )
 
 
 def _bent(structure: BoltedStructure, shapes: Array) -> Array:
     """Share (m,) of the kinetic energy of shapes that is not a rigid motion of the whole."""
-    whole, mass = rigid_motions(structure.mesh.points), structure.matrices[1]
-    rest = shapes - whole @ np.linalg.solve(whole.T @ (mass @ whole), whole.T @ (mass @ shapes))
+    mass = structure.matrices[1]
+    rest = _without(rigid_motions(structure.mesh.points), shapes, mass)
     energy = [np.einsum("im,im->m", x, mass @ x) for x in (rest, shapes)]
     return np.asarray(energy[0] / energy[1])
 
 
-def _mover(structure: BoltedStructure, shapes: Any) -> str:
+def _mover(structure: BoltedStructure, shapes: Array) -> str:
     """The smallest part that moves otherwise than as the whole does in a space of motions without energy."""
-    rigid = structure.rigid
-    mass = structure.matrices[1]
-    if rigid.shape[1]:
-        gram = rigid.T @ (mass @ rigid)
-        shapes = shapes - rigid @ np.linalg.solve(gram, rigid.T @ (mass @ shapes))
-    size = {}
-    for part in structure.mesh.parts:
-        rows = (3 * structure.mesh.part_nodes(part)[:, None] + np.arange(3)).ravel()
-        size[part] = float(np.sqrt((shapes[rows] ** 2).mean()))
-    return max(size, key=lambda name: size[name])
+    mesh, rest = structure.mesh, _without(structure.rigid, shapes, structure.matrices[1])
+    return max(mesh.parts, key=lambda part: float((rest[unknowns_of(mesh.part_nodes(part))] ** 2).mean()))
+
+
+def _without(motions: Array, shapes: Array, mass: Any) -> Array:
+    """Shapes (unknowns, m) without what they have, in the mass, of motions (unknowns, r)."""
+    return shapes - motions @ np.linalg.solve(motions.T @ (mass @ motions), motions.T @ (mass @ shapes))

@@ -153,46 +153,36 @@ def joint_answers(
 def _joint(contact: LoadedContact, interface: Any, bolt: Index, motion: Array, traction: Array) -> dict[str, float]:
     pressure, weights = -traction[:, 0], contact.weights
     touched = float(weights @ (contact.pressure > 0)) or NAN
-    whole = _Carried.of(interface, traction, weights, np.ones(len(weights), dtype=bool))
+    normal, shear, torque, needed = _carried(interface, traction, weights, np.ones(len(weights), dtype=bool))
     parts: dict[int, float] = {}
     for index in np.unique(bolt[bolt >= 0]):
-        own = _Carried.of(interface, traction, weights, bolt == index)
-        if own.normal > 0:
-            parts[int(index)] = own.equivalent / own.normal
+        own, _, _, own_needed = _carried(interface, traction, weights, bolt == index)
+        if own > 0:
+            parts[int(index)] = own_needed / own
     worst = max(parts, key=lambda k: parts[k], default=-1)
     return {
-        "normal_force": whole.normal,
-        "shear_force": whole.shear,
-        "torque": whole.torque,
-        "mean_pressure": whole.normal / float(weights.sum()),
+        "normal_force": normal,
+        "shear_force": shear,
+        "torque": torque,
+        "mean_pressure": normal / float(weights.sum()),
         "greatest_pressure": float(pressure.max()),
         "opened": float(weights @ contact.opened(motion)) / touched,
         "sliding": float(weights @ contact.sliding(motion, traction)) / (float(weights @ (pressure > 0)) or NAN),
-        "friction_needed": whole.equivalent / whole.normal if whole.normal > 0 else NAN,
+        "friction_needed": needed / normal if normal > 0 else NAN,
         "friction_needed_worst": parts.get(worst, NAN),
         "worst_bolt": worst,
     }
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Carried:
-    """What points of a joint carry: normal and shear force [N], torque about the normal [N m], and both as one [N].
+def _carried(interface: Any, traction: Array, weights: Array, some: Mask) -> tuple[float, float, float, float]:
+    """What some points (q,) of a joint carry under tractions (q, 3) [Pa].
 
-    equivalent: shear force that needs as much friction as shear force and torque together.
+    Normal and shear force [N], torque about the normal [N m], and the shear force that needs as much friction as both.
     """
-
-    normal: float
-    shear: float
-    torque: float
-    equivalent: float
-
-    @classmethod
-    def of(cls, interface: Any, traction: Array, weights: Array, some: Mask) -> "_Carried":
-        """Return it of some points (q,) of an interface under tractions (q, 3) [Pa]."""
-        patch = PressedPatch.of(interface, -traction[:, 0], weights, some)
-        forces, torques = patch.loads(traction[:, 1:, None])
-        shear, torque = float(np.linalg.norm(forces)), abs(float(torques[0]))
-        return cls(normal=patch.normal, shear=shear, torque=torque, equivalent=patch.equivalent(shear, torque))
+    patch = PressedPatch.of(interface, -traction[:, 0], weights, some)
+    forces, torques = patch.loads(traction[:, 1:, None])
+    shear, torque = float(np.linalg.norm(forces)), abs(float(torques[0]))
+    return patch.normal, shear, torque, patch.equivalent(shear, torque)
 
 
 def bolt_answers(

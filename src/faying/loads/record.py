@@ -184,14 +184,13 @@ class LoadCases(Recorded):
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions."""
         modes = {} if self.rest_frequency is None else {"mode": np.arange(1, len(self.rest_frequency) + 1)}
-        dowels = {"dowel": self.dowels} if self.dowels else {}
         return {
             "case": self.cases,
             "bolt": self.bolts,
             "joint": self.joints,
             "axis": ("x", "y", "z"),
             **({"part": self.parts} if self.parts else {}),
-            **dowels,
+            **({"dowel": self.dowels} if self.dowels else {}),
             **modes,
         }
 
@@ -216,19 +215,15 @@ class LoadCases(Recorded):
 
     def to_dict(self) -> dict[str, Any]:
         """Return all but the maps in SI units, for JSON; infinite margins are None."""
-        margins = {
-            name: getattr(self, name) for name in ("slip_margin", "slip_margin_worst", "head_margin", "head_motion")
-        }
+        names = ("slip_margin", "slip_margin_worst", "head_margin", "head_motion")
+        margins = {name: getattr(self, name) for name in names}
         finite = {name: np.where(np.isfinite(one), one, np.nan) for name, one in margins.items()}
         return {
             "title": self.title,
             "preload": {"unit": "N", "values": self.preload},
             "cases": list(self.cases),
             "after": [one or None for one in self.after],
-            "bolts": list(self.bolts),
-            "joints": list(self.joints),
-            "dowels": list(self.dowels),
-            "parts": list(self.parts),
+            **{name: list(getattr(self, name)) for name in ("bolts", "joints", "dowels", "parts")},
             **in_units(self, without=MAPS),
             **{name: {"unit": "1", "values": listed(one)} for name, one in finite.items()},
             "intervals": None

@@ -152,9 +152,8 @@ class LoadStatics:
 
         Raises NotConverged where the factorisation does not lead there.
         """
-        loads = np.stack([self._offset(one) for one in actings], axis=1)
-        # what d does to the springs of the joints
-        loads = loads - np.stack([self._spring_forces(one) for one in actings], axis=1)
+        # less what d does to the springs of the joints
+        loads = np.stack([self._offset(one) - self._spring_forces(one) for one in actings], axis=1)
         for _ in range(ROUNDS):
             x = self._vectors.values.T @ loads
             rest = loads - self._images.values @ x
@@ -190,15 +189,15 @@ class LoadStatics:
         most = max((count for *_, count in cases), default=0)
         for step in range(1, most + 1):
             moving = [k for k, (*_, count) in enumerate(cases) if step <= count]
-            tasks = []
+            tasks, tolerances = [], []
             for k in moving:
                 name, start, load, count = cases[k]
                 before = found[k][-1] if found[k] else start
                 share = step / count
                 target = load if step == count else start.acting.times(1 - share) + load.times(share)
                 tasks.append(self._task(name, before, target))
-            loose = [step < cases[k][3] for k in moving]
-            self._settle(tasks, [ON_THE_WAY if one else TOLERANCE for one in loose])
+                tolerances.append(TOLERANCE if step == count else ON_THE_WAY)
+            self._settle(tasks, tolerances)
             for k, task in zip(moving, tasks, strict=True):
                 found[k].append(self._state(task))
         return found
@@ -336,9 +335,8 @@ class LoadStatics:
         total = np.zeros((self.size, self.size), dtype=np.float32)
         for rows, change, (_, contact) in zip(self._single, changes, self.joints, strict=True):
             size = np.abs(change).max(axis=(1, 2))
-            some = np.flatnonzero(
-                size > MIN_TANGENT_CHANGE * np.maximum(contact.k_n, MIN_TANGENT_CHANGE * contact.k_n.max())
-            )
+            least = np.maximum(contact.k_n, MIN_TANGENT_CHANGE * contact.k_n.max())
+            some = np.flatnonzero(size > MIN_TANGENT_CHANGE * least)
             here = rows[some]
             turned = np.matmul((contact.weights[some, None, None] * change[some]).astype(np.float32), here)
             total += here.reshape(-1, self.size).T @ turned.reshape(-1, self.size)
@@ -400,11 +398,7 @@ class LoadStatics:
 
     def _solved(self, forces: Array) -> Array:
         """Displacements near K_0^-1 forces (unknowns, k)."""
-        found = np.asarray(self.factor.solve(forces))
-        if self._rigid.size:
-            found = found - self._rigid @ (self._rigid.T @ found)
-        found[self.fixed] = 0.0
-        return found
+        return admissible(np.asarray(self.factor.solve(forces)), self._rigid, self.fixed)
 
     def _extend(self, new: Array, size: Array) -> int:
         """Add columns (unknowns, k) to the basis; return how many directions were new.
@@ -421,10 +415,7 @@ class LoadStatics:
             return 0
         found, image = extension(new, self._vectors.values, self._images.values, self.stiffness, least=1e-20)
         if not self.size:  # room is made ahead of the first columns
-            self._vectors, self._images = (
-                GrowingColumns(found, ahead=VECTORS_AHEAD),
-                GrowingColumns(image, ahead=VECTORS_AHEAD),
-            )
+            self._vectors, self._images = (GrowingColumns(one, ahead=VECTORS_AHEAD) for one in (found, image))
         else:
             self._vectors.add(found)
             self._images.add(image)
@@ -438,11 +429,8 @@ class LoadStatics:
     def _lost(self, task: _Task) -> NotConverged:
         """What to say of a load whose iteration stops short."""
         state = self._state(replace(task, x=self._in_basis(task.x)))
-        apart = [
-            k
-            for k, (contact, motion) in enumerate(zip((c for _, c in self.joints), state.motions, strict=True))
-            if not np.any(contact.normal(motion)[0] > 0)
-        ]
+        pairs = enumerate(zip(self.joints, state.motions, strict=True))
+        apart = [k for k, ((_, contact), motion) in pairs if not np.any(contact.normal(motion)[0] > 0)]
         where = f"; joint {apart[0] + 1} is fully open, and nothing holds its parts together" if apart else ""
         where = where or self._sheared(state)
         return NotConverged(

@@ -44,7 +44,7 @@ class BlockCholesky:
             blocks[i] = np.zeros((0, 0))
             self._lower.append(lower)
             for edge in neighbours[i].values():
-                edge.values = _forward(lower, edge.values)
+                edge.values = _solved(lower, edge.values)
             for j, edge in neighbours[i].items():
                 blocks[j][np.ix_(edge.columns, edge.columns)] -= edge.values.T @ edge.values
             for j, k in combinations(sorted(neighbours[i]), 2):
@@ -64,13 +64,13 @@ class BlockCholesky:
         """Solve for right-hand sides, one (n_i, m) for each block; the solutions in the same order."""
         found = [np.array(right[k], dtype=float) for k in self._order]
         for i, lower in enumerate(self._lower):
-            found[i] = _forward(lower, found[i])
+            found[i] = _solved(lower, found[i])
             for j, edge in self._neighbours[i].items():
                 found[j][edge.columns] -= edge.values.T @ found[i].astype(edge.values.dtype)
         for i in reversed(range(len(found))):
             for j, edge in self._neighbours[i].items():
                 found[i] -= edge.values @ found[j][edge.columns].astype(edge.values.dtype)
-            found[i] = _backward(self._lower[i], found[i])
+            found[i] = _solved(self._lower[i], found[i], trans="T")
         out: list[Array] = [np.zeros(0)] * len(found)
         for place, block in enumerate(self._order):
             out[block] = found[place]
@@ -109,13 +109,8 @@ def _cholesky(block: Array) -> Array:
         raise NotConverged("the matrix is not positive definite; is a part free to move?") from None
 
 
-def _forward(lower: Array, right: Array) -> Array:
+def _solved(lower: Array, right: Array, trans: str = "N") -> Array:
+    """Solve with a lower triangle; "T": with its transpose."""
     from scipy.linalg import solve_triangular
 
-    return np.asarray(solve_triangular(lower, right.astype(lower.dtype), lower=True, check_finite=False))
-
-
-def _backward(lower: Array, right: Array) -> Array:
-    from scipy.linalg import solve_triangular
-
-    return np.asarray(solve_triangular(lower, right.astype(lower.dtype), lower=True, trans="T", check_finite=False))
+    return np.asarray(solve_triangular(lower, right.astype(lower.dtype), lower=True, trans=trans, check_finite=False))

@@ -51,11 +51,9 @@ class CondensedPart(Pardiso):
             self.schur = matrix().toarray()
             self.memory = float(self.schur.nbytes)
             return
-        if self._none:
-            super().__init__(matrix, single=single)
-            return
-        super().__init__(matrix, single=single, not_eliminated=touched)
-        self._values = np.zeros(0, dtype=self._type)  # the factor has taken what it needs
+        super().__init__(matrix, single=single, not_eliminated=None if self._none else touched)
+        if not self._none:
+            self._values = np.zeros(0, dtype=self._type)  # the factor has taken what it needs
 
     def forward(self, right: Array) -> Array:
         """Half of a solution (n, k) of right-hand sides (n, k): the touched rows hold what is left there."""
@@ -200,8 +198,8 @@ class _Parts:
             self._corrections[kind] = self._correction(kind, matrix, part, motions[part], inside)
             if self.on_disk:
                 self._store(kind)
-        edges = [block(matrix, part[i], part[i]) for part, i in zip(parts, self.local, strict=True)]
-        self.edges = edges  # of the matrix that was condensed, on the touched unknowns
+        # of the matrix that was condensed, on the touched unknowns
+        self.edges = [block(matrix, part[i], part[i]) for part, i in zip(parts, self.local, strict=True)]
         self.first = first
         self._probe = np.random.default_rng(SEED).standard_normal(matrix.shape[0])
         self._probe[self.touched] = 0.0
@@ -330,11 +328,10 @@ class ByParts:
         for number, (at, end) in enumerate(pairwise(self._starts)):
             kind = parts.kind_of[number]
             own = change[at:end]
-            coupled = np.zeros(end - at, dtype=bool)
             outside = own.copy()
             outside.data = np.where((own.indices < at) | (own.indices >= end), own.data, 0.0)
             outside.eliminate_zeros()
-            coupled[np.flatnonzero(np.diff(outside.indptr))] = True
+            coupled = np.diff(outside.indptr) > 0
             here = (own[:, at:end] - parts.edges[parts.first[kind]]).tocsr()
             spare, met = np.flatnonzero(~coupled), np.flatnonzero(coupled)
             for rows in (spare, met):

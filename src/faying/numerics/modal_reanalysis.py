@@ -9,8 +9,8 @@ from faying.errors import NotConverged
 from faying.numerics.modes import Modes, lowest_modes
 from faying.numerics.product import combined, product
 from faying.numerics.shifted import Shifted
-from faying.numerics.single import Single, factorise_roughly
-from faying.numerics.solve import Factorisation, Factoriser, factorise
+from faying.numerics.single import Single, factorise_exactly, factorise_roughly
+from faying.numerics.solve import Factorisation, Factoriser
 from faying.numerics.span import Span, chunks
 from faying.typing import Array, Index
 
@@ -98,9 +98,8 @@ class ModalReanalysis:
         span = self.span
         first = None
         touched = self._change(stiffness)[1]
-        if (
-            len(touched) and np.isin(touched, self._looked).mean() < MIN_OVERLAP
-        ):  # else they have been looked for already
+        # else they have been looked for already
+        if len(touched) and np.isin(touched, self._looked).mean() < MIN_OVERLAP:
             self.look_everywhere(touched)
         targets = np.full(count + WATCHED, PLACED)
         targets[:count] = tolerance
@@ -182,7 +181,7 @@ class ModalReanalysis:
         before = self.span.stiffness
         if self._changed is None or self._changed[0] is not stiffness:
             if stiffness is before:  # the difference would take the room of both
-                self._changed = stiffness, stiffness[:0, :0], np.zeros(0, dtype=np.int64)
+                self._changed = stiffness, stiffness[:0, :0], NOWHERE[0]
             else:
                 change = (stiffness - before).tocsr()
                 change.eliminate_zeros()
@@ -329,10 +328,7 @@ def refined_modes(
         return near.under(stiffness, wanted, tolerance=REFINED, spare=spare)
     except NotConverged:
         del factor, near  # before the next factorisation: one at a time in memory
-    if isinstance(solver, Factoriser):
-        factor = solver.factorise(matrix, single=False)
-    else:
-        factor = factorise(matrix.assembled(), solver)
+    factor = factorise_exactly(matrix, solver)
     return lowest_modes(stiffness, mass, count, shift_frequency=shift_frequency, factor=factor, rigid=rigid)
 
 

@@ -63,15 +63,17 @@ def factorise_roughly(matrix: Shifted, *, rigid: Array, solver: str | Factoriser
         NotConverged: the matrix is singular.
         InputError: memory is short.
     """
+    maker = solver if isinstance(solver, Factoriser) else None
+    if isinstance(solver, Factoriser) or chosen(solver) == "pardiso":
+        try:
+            return Single(matrix, rigid, maker)
+        except NotConverged:
+            pass  # before the other is made, this one is gone
+    return factorise_exactly(matrix, solver)
+
+
+def factorise_exactly(matrix: Shifted, solver: str | Factoriser | None) -> Factorisation:
+    """Factorise in double precision, with arguments and faults of `factorise_roughly`."""
     if isinstance(solver, Factoriser):
-        try:
-            return Single(matrix, rigid, solver)
-        except NotConverged:
-            pass  # before the other is made, this one is gone
         return solver.factorise(matrix, single=False)
-    if chosen(solver) == "pardiso":
-        try:
-            return Single(matrix, rigid)
-        except NotConverged:
-            pass  # before the other is made, this one is gone
     return factorise(matrix.assembled(), solver)

@@ -34,16 +34,6 @@ class Factoriser(Protocol):
         """Factorise a symmetric positive definite `Shifted` (n, n) to single or to double precision."""
 
 
-class Repeatable(Factorisation, Protocol):
-    """A factorisation whose analysis serves further matrices."""
-
-    def again(self, matrix: Any) -> "Repeatable":
-        """Factorise another matrix with the same pattern, both CSR with sorted indices.
-
-        The analysis is kept if it can.
-        """
-
-
 @dataclass(kw_only=True)
 class Released:
     """Stands for a factorisation that was given up for its memory [B]."""
@@ -80,9 +70,6 @@ class _Mumps:
                 "nothing?"
             )
 
-    def again(self, matrix: Any) -> "_Mumps":
-        return _Mumps(matrix)
-
     def solve(self, right: Array) -> Array:
         return np.asarray(self._context.solve(np.array(right, dtype=float, order="F")))
 
@@ -106,9 +93,6 @@ class _Cholmod:
         except cholmod.CholmodNotPositiveDefiniteError as fault:
             raise NotConverged(f"CHOLMOD could not factorise the matrix ({fault}); is a part free to move?") from None
 
-    def again(self, matrix: Any) -> "_Cholmod":
-        return _Cholmod(matrix)
-
     def solve(self, right: Array) -> Array:
         return np.asarray(self._solve(right))
 
@@ -119,28 +103,28 @@ class _SuperLU:
     name = "SuperLU"
 
     def __init__(self, matrix: Any) -> None:
-        from scipy.sparse.linalg import splu
-
-        # both triangles
-        self.memory = guessed(matrix.shape[0], fill=FILL_MINIMUM_DEGREE, per_entry=2 * 10)
-        check(self.memory, matrix.shape[0], self.name)
         try:
-            self._factor = splu(
-                matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-            )
+            self._factor, self.memory = _superlu(matrix)
         except RuntimeError as fault:
             raise NotConverged(f"SuperLU could not factorise the matrix ({fault}); is a part free to move?") from None
-
-    def again(self, matrix: Any) -> "_SuperLU":
-        return _SuperLU(matrix)
 
     def solve(self, right: Array) -> Array:
         return np.asarray(self._factor.solve(right))
 
 
+def _superlu(matrix: Any) -> tuple[Any, float]:
+    """SuperLU's factor of a symmetric matrix, and its memory [B]. Raises RuntimeError where it is singular."""
+    from scipy.sparse.linalg import splu
+
+    memory = guessed(matrix.shape[0], fill=FILL_MINIMUM_DEGREE, per_entry=2 * 10)  # both triangles
+    check(memory, matrix.shape[0], _SuperLU.name)
+    symmetric = {"SymmetricMode": True}
+    return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric), memory
+
+
 _MODULE = {"pardiso": "pypardiso", "mumps": "mumps", "cholmod": "sksparse.cholmod", "superlu": "scipy"}
 BY_PARTS = "pardiso-by-parts"  # a way to use PARDISO on structures; as a whole where there are no parts
-_BACKENDS: dict[str, Callable[[Any], Repeatable]] = {
+_BACKENDS: dict[str, Callable[[Any], Factorisation]] = {
     "pardiso": Pardiso,
     BY_PARTS: Pardiso,
     "mumps": _Mumps,
@@ -197,7 +181,7 @@ def chosen(name: str | None = None) -> str:
     return asked
 
 
-def factorise(matrix: Any, name: str | None = None) -> Repeatable:
+def factorise(matrix: Any, name: str | None = None) -> Factorisation:
     """Factorise a sparse symmetric positive definite matrix. Raises NotConverged where it is singular."""
     return _BACKENDS[chosen(name)](matrix)
 
@@ -259,15 +243,10 @@ def negative_eigenvalues(matrix: Any, name: str | None = None) -> int:
 
     Raises NotConverged where the factorisation gives no signs.
     """
-    from scipy.sparse.linalg import splu
-
     if chosen(name) in ("pardiso", BY_PARTS):
         return Pardiso(matrix.tocsr(), INDEFINITE).negative
-    check(guessed(matrix.shape[0], fill=FILL_MINIMUM_DEGREE, per_entry=2 * 10), matrix.shape[0], "SuperLU")
     try:
-        factor = splu(
-            matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
+        factor, _ = _superlu(matrix)
     except RuntimeError as fault:
         raise NotConverged(f"the modes could not be counted ({fault})") from None
     if not np.array_equal(factor.perm_r, factor.perm_c):
