@@ -74,7 +74,7 @@ SHAPES = {"shapes": 1e-4, "shapes_imaginary": 1e-2, "mac": 1e-4, "frac": 2e-4}
 SHAPES |= {"stress_spread": 1e-4}  # of a bolt, the root of a difference that rounding leaves
 # estimates: from the strains of a shape that is right to 1e-4; the residual of a response in the norm of each factor
 ESTIMATES = {"mesh_error": 5e-3, "error": 0.1}
-TOLERANCES = ESTIMATES | {"loss_factors": 1e-6, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
+TOLERANCES = ESTIMATES | {"loss_factors": 1e-5, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
 RESPONSE = 2 * SHAPES["shapes"]  # of its greatest value; two shapes are in each term
 FREQUENCY, DAMPING = 1e-8, 1e-2
 # intervals and draws of waves, each in a small basis of its own: at a load between those that it is trained on, two
