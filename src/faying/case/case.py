@@ -98,11 +98,13 @@ class Case:
         tables = [file for file in study.files if file != study.geometry.file]  # readers of meshes look for themselves
         ends = [text for file in tables for text in end_of(file)]
         notes += [Note(code="file-end", text=text) for text in ends if text not in known]
-        if not SIZES[0] <= (size := structure.mesh.size) <= SIZES[1]:
+        size = structure.mesh.size
+        if not SIZES[0] <= size <= SIZES[1]:
             text = (
-                f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its geometry"
+                f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its "
+                "geometry is wrong"
             )
-            notes.append(Note(code="size", text=f"{text} is wrong"))
+            notes.append(Note(code="size", text=text))
         notes += (*law_reasons(structure, surfaces), *structure.notes)
         notes += (*material_notes(structure), *bolt_notes(structure, study.bolt_forces))
         return cls(
