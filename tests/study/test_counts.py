@@ -93,7 +93,6 @@ def test_every_whole_number_of_a_command_has_both_ends():
         ["sweep", "x.toml", "--jobs", "1000000000"],
         ["predict", "x.toml", "--samples", "1000000000"],
         ["identify", "x.toml", "--count", "1000000000"],
-        ["asperity", "--steps", "1000000000"],
         ["backbone", "x.toml", "--harmonics", "1000000000"],
         [
             "law",

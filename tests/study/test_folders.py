@@ -27,7 +27,9 @@ def folder(tmp_path):
 
 def test_two_studies_in_one_folder_have_two_folders_of_results(folder, monkeypatch):
     monkeypatch.setattr("faying.answer.run.run", lambda *_, **__: small_result())
-    monkeypatch.setattr("faying.output.report.write", lambda result, hidden: [result.save(hidden / "result.nc")])
+    monkeypatch.setattr(
+        "faying.output.report.write", lambda result, hidden, drawn=True: [result.save(hidden / "result.nc")]
+    )
     first = call("run", folder / "study.toml").output
     written = {path: path.read_bytes() for path in (folder / "results").iterdir()}
     second = call("run", folder / "thick.toml").output
