@@ -189,18 +189,21 @@ def both_sides(path):
     return _write(path, **parts), [drawn, drawn, bare, bare]
 
 
-def one_axis(path):
-    """Two M10 on one axis: plates a and b, 30 mm of air, plates c and d, with a column between; and two bare holes."""
+def one_axis(path, lows=(0, 50)):
+    """Two M10 on one axis: plates a and b, 30 mm of air, plates c and d, with a column between; and two bare holes.
+
+    lows: where the drawn bolts begin [mm]; the other holes are bare.
+    """
     places = BOTH
     parts = {}
     for name, (low, high) in {"a": (0, 10), "b": (10, 20), "c": (50, 60), "d": (60, 70)}.items():
         parts[f"plate {name}"] = _drilled(_box((0, 120), (0, 50), (low, high)), places, low, high, 11)
     parts["plate column"] = _box((55, 65), (20, 30), (20, 50))
-    for k, low in enumerate((0, 50), 1):
+    for k, low in enumerate(lows, 1):
         parts[f"bolt {k}"] = screw(A, low + 20, 10, 30, ("hexagon", 16))
         parts[f"nut {k}"] = nut(A, low - 8.4, 10, 8.4, 16)
     drawn, bare = Drawn(size=10, ring=(11, 16)), Drawn(size=10, ring=(11, 20))
-    return _write(path, **parts), [drawn, drawn, bare, bare]
+    return _write(path, **parts), [*[drawn] * len(lows), *[bare] * (4 - len(lows))]
 
 
 def through_tube(path):

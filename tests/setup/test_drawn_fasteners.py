@@ -45,6 +45,17 @@ def test_bolts_are_found_as_they_are_drawn(made, name):
         assert bolt.preload == pytest.approx(FORCES[one.size], rel=6e-3)
 
 
+def test_bare_holes_in_line_with_a_drawn_bolt_have_a_bolt_of_their_own(tmp_path):
+    """30 mm of air are between them: the far plate, through which the drawn bolt runs, is no lip of a slot."""
+    path, expected = drawn.one_axis(tmp_path / "line.step", lows=(50,))
+    found = new.find(path)
+    assert len(found.bolts) == len(expected)
+    assert {frozenset(bolt.parts) for bolt in found.bolts} == {
+        frozenset({"plate a", "plate b"}),
+        frozenset({"plate c", "plate d"}),
+    }
+
+
 @pytest.mark.parametrize("name", drawn.MADE)
 def test_no_fastener_is_meshed(made, name):
     _, _, found = made(name)

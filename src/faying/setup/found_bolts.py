@@ -36,7 +36,7 @@ def found_bolts(
     found = [*fasteners.bolts]
     left: dict[tuple[str, str], list[Array]] = {}  # what is to be said of rows of holes -> their places [m]
     met = {side for contact in joints for side in contact.sides}
-    every = [bore for row in free for bore in row.bores]
+    every = bores(facts)
     for stack in (one for row in free for one in _from_both_sides(row)):
         if 2 * min(bore.radius for bore in stack.bores) > WIDEST or takes_dowel(facts, stack):
             continue  # a pipe, a bearing, or a dowel
@@ -90,7 +90,8 @@ def _alone(facts: GeometryFacts, stack: Stack, met: set[tuple[str, int]]) -> str
 def _in_slot(facts: GeometryFacts, stack: Stack, every: Sequence[Bore]) -> BoltProposal | None:
     """A bolt whose nut, or head, pulls the lips of a T-slot beyond the end of a row of clearance holes.
 
-    every: the bores of all rows: a part with one on this axis, such as two plates farther on, has a bolt of its own.
+    every: all bores, those of drawn bolts too: a part with one on this axis, such as two plates farther on, has a bolt
+    of its own.
     """
     sizes = {size_for_hole(2 * bore.radius) for bore in stack.bores}
     size = sizes.pop()
