@@ -25,6 +25,7 @@ EXAMPLES = sorted(
     p.relative_to(ROOT) for p in (ROOT / "examples").rglob("*.toml") if p.stem not in ("uncertain", "laws-evidence")
 )
 OFF = {
+    "t-specimen": pytest.mark.xfail(reason="at 8 kN, between the loads trained on, offsets of waves are 8e-4 apart"),
     "solid-bolt": pytest.mark.xfail(reason="modes 5 and 6 mix by half at an end: the last digits say which is which"),
 }
 by_parts = pytest.mark.skipif("pardiso" not in available(), reason="only PARDISO factorises part by part")
@@ -67,19 +68,17 @@ def test_threads_decide_nothing(study, plenty, tmp_path):
     agree(faying.load(file), plenty)
 
 
-# how an engine came to its answer; shapes of twins, which may turn; slopes, which are differences of frequencies
+# how an engine came to its answer, and shapes of twins, which may turn
 OWN = {"imbalance", "newton_steps", "factor_memory", "loss_error", "rigid", "provenance", "solver", "bolt_numbers"}
-OWN |= {"wave_slopes"}
 SHAPES = {"shapes": 1e-4, "shapes_imaginary": 1e-2, "mac": 1e-4, "frac": 2e-4}
 SHAPES |= {"stress_spread": 1e-4}  # of a bolt, the root of a difference that rounding leaves
 # estimates: from the strains of a shape that is right to 1e-4; the residual of a response in the norm of each factor
 ESTIMATES = {"mesh_error": 5e-3, "error": 0.1}
-TOLERANCES = ESTIMATES | {"loss_factors": 1e-5, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
+TOLERANCES = ESTIMATES | {"loss_factors": 1e-6, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
 RESPONSE = 2 * SHAPES["shapes"]  # of its greatest value; two shapes are in each term
 FREQUENCY, DAMPING = 1e-8, 1e-2
-# intervals and draws of waves, each in a small basis of its own: at a load between those that it is trained on, two
-# bases were up to 8e-4 apart (T-specimen, 8 kN, waves)
-IN_A_BASIS = 10 * changed.TOLERANCE
+# intervals and draws of waves, each in a small basis of its own, which is half as good at loads not trained on
+IN_A_BASIS = 4 * changed.TOLERANCE
 NO_SLIP = 1e-7  # damping ratio of modes that do not slip
 
 
@@ -89,6 +88,10 @@ def agree(one, other):
         if field.name == "level_error" and one.level_slip is not None:
             slips = one.level_slip > NO_SLIP  # else it is the error of nothing
             assert one.level_error[slips] == pytest.approx(other.level_error[slips], abs=DAMPING, nan_ok=True)
+        elif field.name == "wave_slopes" and one.wave_slopes is not None:
+            # differences of frequencies, each to what it is found to
+            most = 2 * IN_A_BASIS * np.nanmax(other.wave_frequencies) / max(np.ptp(other.loads), 1.0)
+            assert one.wave_slopes == pytest.approx(other.wave_slopes, abs=most, nan_ok=True)
         elif field.name not in OWN:
             name = f"level_{field.name}" if isinstance(one, VibrationResponse) else field.name
             alike(name, getattr(one, field.name), getattr(other, field.name))

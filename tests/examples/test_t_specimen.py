@@ -168,8 +168,9 @@ def test_the_backbone_of_mode_3_has_a_witness():
     assert np.count_nonzero(apart) == sum(note.code == "backbone-witness" for note in curve.notes)
     assert abs(curve.witness.damping_change[-1]) < 0.05
     assert np.all(np.abs(curve.witness.frequency_change) < 1e-3)
-    # what coarser points change is small, or said
-    coarse = abs(curve.bounds.points_damping)
-    assert coarse < 0.1
-    assert (coarse > 0.05) == any("half of the joints' points" in note.text for note in curve.notes)
     assert curve.bounds.residual < 0.01
+    coarse = abs(curve.bounds.points_damping)
+    assert (coarse > 0.05) == any("half of the joints' points" in note.text for note in curve.notes)
+    if 0.02 < coarse < 0.1:
+        pytest.xfail(f"half of the points move the damping by {coarse:.1%}, for 2 %")
+    assert coarse < 0.02
