@@ -17,7 +17,9 @@ from pathlib import Path
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
-from faying import Material, solve_asperity  # noqa: E402  the thread limits are read when NumPy is loaded
+from asperity_fe import solve_asperity  # noqa: E402  the thread limits are read when NumPy is loaded
+
+from faying import Material  # noqa: E402
 from faying.numerics.solve import available  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent.parent))

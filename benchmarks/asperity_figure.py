@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from asperity_fe.drive import AsperityCase
+from asperity_fe.plasticity import equivalent
+from asperity_fe.result import AsperityResult
 
-from faying.asperity_fe.drive import AsperityCase
-from faying.asperity_fe.plasticity import equivalent
-from faying.asperity_fe.result import AsperityResult
 from faying.materials import RIGID, ContactPair, Material
 from faying.style import WIDE, colour, drawing, new_panels, save
 

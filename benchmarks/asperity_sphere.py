@@ -7,8 +7,9 @@ and for tangent moduli of 1 and 2 % of E.
 import sys
 
 import numpy as np
+from asperity_fe import solve_asperity
 
-from faying import RIGID, ContactPair, Material, solve_asperity
+from faying import RIGID, ContactPair, Material
 from faying.contact.asperity.jackson_green import JacksonGreen
 from faying.contact.asperity.kogut_etsion import KogutEtsion
 from faying.contact.asperity.unloading import EtsionKligermanKadin

@@ -11,11 +11,11 @@ stick is the force over that of the same cap with Ea = Eb.
 import os
 
 import numpy as np
+from asperity_fe.drive import AsperityCase
+from asperity_fe.result import AsperityResult
 
 from faying import RIGID, Material
 from faying.apart import in_processes
-from faying.asperity_fe.drive import AsperityCase
-from faying.asperity_fe.result import AsperityResult
 
 RATIOS = (1.0, 1.5, 2.0)
 WIDER_RATIOS = (1.0, 1.5, 2.0, 4.0)

@@ -3,7 +3,6 @@ from . import contact as contact
 from .answer.level_curves import LevelCurves as LevelCurves
 from .answer.level_curves import level_curves as level_curves
 from .answer.run import run as run
-from .asperity_fe import solve_asperity as solve_asperity
 from .backbones.backbone import backbone as backbone
 from .bolt.bolt import Bolt as Bolt
 from .bolt.bolt import Washer as Washer

@@ -5,10 +5,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from asperity_fe import solve_asperity
+from asperity_fe.body import Quads
+from asperity_fe.plasticity import equivalent
 
-from faying import RIGID, ContactPair, InputError, Material, NotConverged, solve_asperity
-from faying.asperity_fe.body import Quads
-from faying.asperity_fe.plasticity import equivalent
+from faying import RIGID, ContactPair, InputError, Material, NotConverged
 from faying.contact.asperity.jackson_green import JacksonGreen
 from faying.contact.asperity.kogut_etsion import KogutEtsion
 from faying.contact.asperity.unloading import EtsionKligermanKadin
@@ -232,7 +233,7 @@ def test_what_cannot_be_pressed_is_refused(changes, words):
 
 
 def test_a_run_that_does_not_converge_says_where_and_keeps_its_steps(monkeypatch):
-    from faying.asperity_fe import model
+    from asperity_fe import model
 
     def gives_up(*given, **named):
         found = balanced(*given, **named)
@@ -250,7 +251,7 @@ def test_a_run_that_does_not_converge_says_where_and_keeps_its_steps(monkeypatch
 
 
 def test_newton_that_is_stopped_early_names_the_place(monkeypatch):
-    from faying.asperity_fe import equilibrium
+    from asperity_fe import equilibrium
 
     monkeypatch.setattr(equilibrium, "ITERATIONS", 1)
     with pytest.raises(NotConverged, match=r"imbalance .* largest at r = .*; take more steps"):

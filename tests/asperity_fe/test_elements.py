@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from asperity_fe.body import Body, CapState, Quads
+from asperity_fe.mesh import cap_mesh
+from asperity_fe.model import FarField, shared
+from asperity_fe.plasticity import Flow, equivalent, return_map
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from faying.asperity_fe.body import Body, CapState, Quads
-from faying.asperity_fe.mesh import cap_mesh
-from faying.asperity_fe.model import FarField, shared
-from faying.asperity_fe.plasticity import Flow, equivalent, return_map
 from faying.errors import InputError
 from faying.materials import Material
 

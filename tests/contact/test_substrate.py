@@ -4,12 +4,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from asperity_fe import solve_asperity
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from faying import JK, RIGID, ContactPair, Material, solve_asperity
+from faying import JK, RIGID, ContactPair, Material
 from faying.contact.substrate import (
     COUPLING,
     SHAPE,

@@ -11,7 +11,7 @@ import pytest
 
 import faying
 
-ELSEWHERE = ("surface", "contact", "halfspace", "asperity_fe", "materials", "distribution", "errors")
+ELSEWHERE = ("surface", "contact", "halfspace", "materials", "distribution", "errors")
 JUNK = {
     "None": None,
     "True": True,

@@ -14,10 +14,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-
-from faying.asperity_fe.body import CapState
-from faying.asperity_fe.mesh import cap_mesh
-from faying.asperity_fe.model import build
+from asperity_fe.body import CapState
+from asperity_fe.mesh import cap_mesh
+from asperity_fe.model import build
 
 
 @dataclass(frozen=True)

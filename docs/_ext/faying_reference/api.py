@@ -36,7 +36,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
         *("Combined", "Roughness"),
     ),
     "Contact": (
-        *("Mates", "JK", "HalfSpace", "solve_half_space", "solve_asperity", "contact"),
+        *("Mates", "JK", "HalfSpace", "solve_half_space", "contact"),
         *("ContactLaw", "Response", "Comparison"),
     ),
     "Materials": ("Material", "ContactPair", "CATALOGUE", "RIGID"),

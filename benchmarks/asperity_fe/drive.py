@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 
-from faying.asperity_fe.body import CapState
-from faying.asperity_fe.equilibrium import CapEquilibrium
-from faying.asperity_fe.mesh import cap_mesh, rim_radius
-from faying.asperity_fe.model import CapModel, build, expected_radius
-from faying.asperity_fe.result import AsperityResult, CapField, History
+from asperity_fe.body import CapState
+from asperity_fe.equilibrium import CapEquilibrium
+from asperity_fe.mesh import cap_mesh, rim_radius
+from asperity_fe.model import CapModel, build, expected_radius
+from asperity_fe.result import AsperityResult, CapField, History
 from faying.checks import number
 from faying.errors import InputError, NotConverged
 from faying.materials import RIGID, ContactPair, Material

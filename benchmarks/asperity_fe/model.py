@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from faying.asperity_fe.body import Body, CapState, Spring
-from faying.asperity_fe.equilibrium import CapEquilibrium, CapSolver, balanced, follow
-from faying.asperity_fe.mesh import CapMesh
-from faying.asperity_fe.plasticity import equivalent
+from asperity_fe.body import Body, CapState, Spring
+from asperity_fe.equilibrium import CapEquilibrium, CapSolver, balanced, follow
+from asperity_fe.mesh import CapMesh
+from asperity_fe.plasticity import equivalent
 from faying.materials import Material
 from faying.numerics.solve import factorise
 from faying.typing import Array, Index

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from faying.asperity_fe.mesh import CapMesh
-from faying.asperity_fe.plasticity import Flow, Returned, return_map
+from asperity_fe.mesh import CapMesh
+from asperity_fe.plasticity import Flow, Returned, return_map
 from faying.errors import InputError
 from faying.materials import Material
 from faying.typing import Array, Index

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.asperity_fe.body import Balance, Body, CapState
+from asperity_fe.body import Balance, Body, CapState
 from faying.errors import NotConverged
 from faying.numerics.pardiso import Pardiso
 from faying.numerics.solve import Factorisation, factorise
