@@ -187,58 +187,12 @@ def test_bases_that_were_kept_grow_on_as_if_they_had_not_been(tmp_path):
     assert grown.estimate == pytest.approx(expected.estimate, rel=0.1, abs=1e-9)
 
 
-@pytest.mark.parametrize("friction", [None, 0.05])
-def test_groups_of_points_give_the_same_answers(trained, monkeypatch, friction):
-    """Groups give starts, tangents and the span of the modes, and no answer: those stay, with sliding as well."""
-    from faying.reduction import reduced
-
-    monkeypatch.setattr(reduced, "GROUPED_FROM", 2)
-    model = trained[1].model
-    grouped = model.grouped()
-    static = grouped.groups[0][0]
-    assert len(static.weights) < len(model.weights[0])
-    assert static.weights.sum() == pytest.approx(model.weights[0].sum())
-    assert static.mean(np.full(len(model.weights[0]), 3.0)) == pytest.approx(np.full(len(static.weights), 3.0))
-    for D, G, F in [(2.41, 1e-10, 900.0), (2.33, 5e-11, 2100.0)]:
-        one, other = (m.evaluate([law(D, G)], np.array([F]), [friction]) for m in (model, grouped))
-        assert other.frequencies == pytest.approx(one.frequencies, rel=1e-7)
-        assert other.loss_factors == pytest.approx(one.loss_factors, rel=1e-4)
-        assert other.preload.pressures[0] == pytest.approx(
-            one.preload.pressures[0], abs=1e-6 * one.preload.pressures[0].max()
-        )
-
-
-@pytest.mark.parametrize("friction", [None, 0.05])
-def test_secants_end_in_the_balance_that_newton_finds(trained, monkeypatch, friction):
-    """From a start far off and from a near one; where they give up, Newton is left to answer."""
-    from faying.reduction import reduced, secant
-
-    monkeypatch.setattr(reduced, "GROUPED_FROM", 2)
-    model = trained[1].model
-    laws, forces = [law(2.41, 1e-10)], np.array([900.0])
-    exact = model.equilibrium(laws, forces, [friction])
-    grouped = model.grouped()
-    joints = list(zip(grouped._motions(grouped.static_relative, 0), laws, strict=True))
-    secants = secant.Secants(stiffness=grouped.matrices[0], joints=joints, friction=[friction])
-    load = grouped.static_loads @ forces
-    for start in (exact.displacement, 1.02 * exact.displacement):
-        found = secants.solve(load, start, 1e-9)
-        assert found is not None
-        assert found.imbalance < 1e-9
-        assert found.slipping == pytest.approx(exact.slipping, abs=1e-9)
-        assert found.pressures[0] == pytest.approx(exact.pressures[0], abs=1e-7 * exact.pressures[0].max())
-    monkeypatch.setattr(secant, "STEPS", 0)
-    assert secants.solve(load, 1.02 * exact.displacement, 1e-9) is None
-    again = grouped.equilibrium(laws, forces, [friction])
-    assert again.pressures[0] == pytest.approx(exact.pressures[0], abs=1e-6 * exact.pressures[0].max())
-
-
 def test_springs_of_one_pressure_carry_the_load(trained):
     """The start of an equilibrium: springs that are linear about one pressure balance the bolt, and carry its mean."""
-    from faying.reduction.secant import evenly_pressed
+    from faying.reduction.reduced import evenly_pressed
 
     model = trained[1].model
-    (motion,), one, load = model._motions(model.static_relative, 0), law(), model.static_loads @ [900.0]
+    (motion,), one, load = model._motions(model.static_relative), law(), model.static_loads @ [900.0]
     u = evenly_pressed(model.matrices[0], [(motion, one)], load)
     force = load - model.matrices[0] @ u
     # what is left is the force of the springs, which is that of one pressure and stiffness at all points
@@ -340,9 +294,9 @@ def test_a_scaled_law_is_the_law_with_that_scale():
 
 
 @pytest.mark.parametrize("open_share", [0.0, 0.3, 1.0])
-def test_springs_of_groups_are_the_sum_over_the_points(open_share):
+def test_springs_of_a_joint_are_the_sum_over_its_points(open_share):
     """Points without springs are left out where they are many; the sum is that over all of them."""
-    from faying.reduction.groups import joint_stiffness
+    from faying.reduction.reduced import joint_stiffness
 
     rng = np.random.default_rng(3)
     motion, springs = rng.standard_normal((60, 3, 5)), rng.random((60, 3))
@@ -359,7 +313,7 @@ def test_a_start_that_presses_far_beyond_a_law_leads_to_the_same_equilibrium():
     reduction = Reduction.of(structure, laws, forces, count=COUNT)
     small = reduction.model
     right = small.equilibrium(laws, forces, [None])
-    motions = small._motions(small.static_relative, 0)
+    motions = small._motions(small.static_relative)
     load = small.static_loads @ forces
     balance = ReducedEquilibrium(small.static_stiffness, list(zip(motions, laws, strict=True)))
     far = right.displacement * 40.0

@@ -386,7 +386,7 @@ class Reduction:
             residuals = []
             for k in poor:
                 one, start = variants[k], found[k].displacement if k in found else variants[k].start
-                found[k] = self.at(one).equilibrium_from(one.laws, one.forces, one.friction, start)
+                found[k] = self.at(one).equilibrium(one.laws, one.forces, one.friction, start)
                 residuals.append(self.static_residual(one.laws, one.forces, one.friction, found[k]))
             right = np.asfortranarray(np.stack(residuals, axis=1))
             answers = self.factor.solve(right)

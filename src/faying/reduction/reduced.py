@@ -15,56 +15,52 @@ from faying.joint.equilibrium import Equilibrium, PreloadState, Step, StickSlip
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
 from faying.numerics.damped import lowest_complex
-from faying.reduction.groups import Groups, joint_stiffness, per_point
 from faying.reduction.part_shares import ReducedShares, Scales
-from faying.reduction.secant import Secants, evenly_pressed
 from faying.typing import Array, Complex
 
 _SINGLE = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mass", "count", "coarse")
 _OF_JOINTS = ("weights", "gaps", "static_relative", "dynamic_relative")
-BALANCED = 1e-8  # imbalance at which the pressure is right to far more digits than a sweep gives
+OPENS = "preload: the joint opens fully on the way; load it in smaller steps"
+BALANCED = 1e-7  # imbalance at which a frequency is right to a tenth of that
 BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
-SPAN = 10  # modes in seven digits beyond those wanted, with which they span what the modes are sought in
-REUSE_BELOW = 0.1  # of the force out of balance: a tangent that leaves less serves once more
-SECANTS = 1e-7  # imbalance to which secants lead: frequencies are right to a tenth of that
-GROUP_TOLERANCE = 1e-2  # imbalance of the groups at which all points go on
-GROUPED_FROM = 400  # points of a joint from which groups pay
+REUSE_BELOW = 0.4  # of the force out of balance: a tangent that leaves less serves once more
+EVEN = 2  # times that joints of one pressure each are solved: the pressure is that of the last
+MIN_CLOSED_SHARE = 0.95  # of the points: where fewer have springs, the others are left out
 SLIGHT = 1e-6  # relative error of an eigenvalue up to which first order is enough for the higher modes
+
+
+def joint_stiffness(relative: Array, springs: Array) -> Array:
+    """Stiffness (m, m) of springs (q, 3) [N/m], normal and both tangential, on a relative motion (3q, m).
+
+    Springs and losses are never negative: half the work through their roots. A motion in single precision gives as many
+    digits.
+    """
+    closed = np.flatnonzero(springs.any(axis=1))
+    if len(closed) < MIN_CLOSED_SHARE * len(springs):
+        # one copy, by rows of three, takes less than what it saves
+        rooted = relative.reshape(len(springs), -1).take(closed, axis=0).reshape(-1, relative.shape[1])
+        rooted *= np.sqrt(springs[closed]).astype(relative.dtype).reshape(-1, 1)
+    else:
+        rooted = np.sqrt(springs).astype(relative.dtype).reshape(-1, 1) * relative
+    return np.asarray((rooted.T @ rooted).astype(float))  # NumPy sees that both are one, and does half of it
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReducedMotion:
-    """Relative motion at the points of a joint from coefficients of a basis: relative (3q, m), dense.
-
-    groups: of the points, which then stand for them in tangents; light: the motion that tangents take, the exact one
-    where None.
-    """
+    """Relative motion at the points of a joint from coefficients of a basis: relative (3q, m), dense."""
 
     weights: Array
     gap: Array
     relative: Array
-    groups: Groups | None = None
-    light: Any = None
 
-    @property
-    def coarse(self) -> "ReducedMotion":
-        """The groups as points; itself where there are none."""
-        groups = self.groups
-        if groups is None:
-            return self
-        return ReducedMotion(
-            weights=groups.weights, gap=groups.mean(self.gap), relative=groups.relative, light=groups.light_mean
-        )
-
-    @property
-    def quick(self) -> Any:
-        """The motion that tangents and small changes take: seven digits where they are known."""
-        light = self.light if self.groups is None else self.groups.light
-        return self.relative if light is None else light
+    @cached_property
+    def single(self) -> Any:
+        """The relative motion in single precision: enough for the tangents of an equilibrium."""
+        return self.relative.astype(np.float32)
 
     def springs(self, k_n: Array, k_t: Array) -> Array:
         """Stiffness (m, m) [N/m] of springs per area k_n, k_t [Pa/m] (q,)."""
-        return joint_stiffness(self.relative, per_point(self.weights, k_n, k_t))
+        return joint_stiffness(self.relative, self.weights[:, None] * np.stack([k_n, k_t, k_t], axis=1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,9 +106,34 @@ def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT)
     return values[order], vectors[:, order]
 
 
-def _of_springs(springs: Springs["ReducedMotion"], moved: Any, k_n: Array, k_t: Array) -> Array:
-    """Stiffness (m, m) of springs per area k_n, k_t [Pa/m] of a joint on the motion (3q, m) of its points."""
-    return joint_stiffness(moved, per_point(springs.interface.weights, k_n, k_t))
+def evenly_pressed(stiffness: Array, joints: Sequence[tuple[ReducedMotion, JointLaw]], load: Array) -> Array:
+    """Displacement under springs that are tangent to p(approach) at one pressure in each joint: what they then carry.
+
+    Raises NotConverged where nothing but slack springs holds the parts.
+    """
+    from scipy.linalg import LinAlgError, cho_factor, cho_solve
+
+    ends = [(10 * law.least_pressure, 0.5 * law.model.greatest_pressure) for _, law in joints]
+    means = [
+        float(np.clip(10 * np.sqrt(law.least_pressure * law.model.greatest_pressure), *end))
+        for (_, law), end in zip(joints, ends, strict=True)
+    ]
+    u = np.zeros(len(load))
+    for _ in range(EVEN):
+        push, tangent, laid = load, stiffness, []
+        for (motion, law), mean in zip(joints, means, strict=True):
+            k_n, k_t = (float(k) for k in law.stiffness(np.asarray(mean)))
+            tangent = tangent + motion.springs(*np.broadcast_to([[k_n], [k_t]], (2, len(motion.gap))))
+            laid.append((k_n, mean - k_n * (float(law.approach(mean)) + motion.gap)))
+            push = push + motion.relative[::3].T @ (laid[-1][1] * motion.weights)
+        try:
+            u = np.asarray(cho_solve(cho_factor(tangent), push))
+        except LinAlgError:
+            raise NotConverged(OPENS) from None
+        for i, ((motion, _), (k_n, offset)) in enumerate(zip(joints, laid, strict=True)):
+            carried = np.maximum(offset - k_n * (motion.relative[::3] @ u), 0.0)
+            means[i] = float(np.clip(motion.weights @ carried / motion.weights.sum(), *ends[i]))
+    return u
 
 
 class ReducedEquilibrium(Equilibrium):
@@ -134,7 +155,7 @@ class ReducedEquilibrium(Equilibrium):
         matrix = self.stiffness.copy()
         for interface, k_n, k_t in self._tangents(u, slip_states):
             if not k_t[:, 0, 1].any():  # nothing slides
-                matrix += joint_stiffness(interface.quick, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
+                matrix += joint_stiffness(interface.single, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
                 continue
             local = interface.relative.reshape(len(k_n), 3, -1)
             scaled = np.empty_like(local)
@@ -145,7 +166,7 @@ class ReducedEquilibrium(Equilibrium):
         try:
             self._tangent = cho_factor(matrix)
         except LinAlgError:
-            raise NotConverged("preload: the joint opens fully on the way; load it in smaller steps") from None
+            raise NotConverged(OPENS) from None
         return np.asarray(cho_solve(self._tangent, force)), 0
 
 
@@ -156,8 +177,7 @@ class ReducedModel:
     weights [m2], gaps [m]: (q,) of each joint; static_*: stiffness (s, s), loads (s, bolts) of 1 N each, relative
     motion at the points of each joint (3q, s); dynamic_*: stiffness, mass (d, d), relative motion (3q, d); count: modes
     that are given; coarse: how many leading vectors of the dynamic basis make the coarser one of the estimate; shares:
-    of the parts that may be scaled; scales: of those parts, all 1 where None; groups: of the points of each joint in
-    both bases, None where points are few: `grouped`.
+    of the parts that may be scaled; scales: of those parts, all 1 where None.
     """
 
     weights: Sequence[Array]
@@ -172,15 +192,6 @@ class ReducedModel:
     coarse: int
     shares: ReducedShares | None = None
     scales: Scales | None = None
-    groups: Sequence[tuple[Groups, Groups] | None] = ()
-
-    def grouped(self) -> "ReducedModel":
-        """The same model with the points of large joints in groups: it gives the same answers sooner."""
-        found = [
-            (Groups.of(w, static), Groups.of(w, dynamic)) if len(w) >= GROUPED_FROM else None
-            for w, static, dynamic in zip(self.weights, self.static_relative, self.dynamic_relative, strict=True)
-        ]
-        return replace(self, groups=found)
 
     def arrays(self) -> dict[str, Array]:
         """All of it by name, to be kept in a file; `from_arrays` gives it back, without scales."""
@@ -219,72 +230,31 @@ class ReducedModel:
         """The same structure with other gaps [m] (q,) of its joints before any load; itself where None."""
         return self if gaps is None else replace(self, gaps=gaps)
 
-    def _motions(self, relative: Sequence[Array], basis: int) -> list[ReducedMotion]:
-        """The joints in the basis for equilibrium, 0, or vibration, 1."""
-        groups = [None if pair is None else pair[basis] for pair in self.groups or [None] * len(self.weights)]
-        found = zip(self.weights, self.gaps, relative, groups, strict=True)
-        return [ReducedMotion(weights=w, gap=gap, relative=motion, groups=group) for w, gap, motion, group in found]
+    def _motions(self, relative: Sequence[Array]) -> list[ReducedMotion]:
+        """The joints in the basis of their relative motion."""
+        found = zip(self.weights, self.gaps, relative, strict=True)
+        return [ReducedMotion(weights=w, gap=gap, relative=motion) for w, gap, motion in found]
 
     def equilibrium(
-        self,
-        laws: Sequence[JointLaw],
-        forces: Array,
-        friction: Sequence[float | None],
-        start: Array | None = None,
-        tolerance: float = SECANTS,
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
     ) -> PreloadState:
         """Equilibrium in the basis under bolt forces [N] (b,).
 
-        start: coefficients found before, maybe in fewer vectors; tolerance: imbalance that is left where points are
-        grouped.
+        start: coefficients found before, maybe in fewer vectors.
         """
-        motions, load = self._motions(self.static_relative, 0), self.static_loads @ forces
+        load, joints = self.static_loads @ forces, list(zip(self._motions(self.static_relative), laws, strict=True))
         if start is not None:
             start = np.concatenate([start, np.zeros(len(load) - len(start))])
-        if any(motion.groups is not None for motion in motions):
-            joints = list(zip(motions, laws, strict=True))
-            secants = Secants(stiffness=self.matrices[0], joints=joints, friction=friction)
-            all_grouped = all(motion.groups is not None for motion in motions)
             try:
-                near = secants.near(load, start, GROUP_TOLERANCE) if all_grouped else None
-                if near is None:
-                    groups = self._balance([motion.coarse for motion in motions], laws, friction)
-                    near = groups.solve(load, start=start, tolerance=GROUP_TOLERANCE).displacement
-                start = near
-                found = secants.solve(load, start, tolerance) if all_grouped else None
-                if found is not None:
-                    return found
-            except NotConverged:
+                balance = ReducedEquilibrium(self.matrices[0], joints, friction=friction)
+                return balance.solve(load, start=start, tolerance=BALANCED)
+            except NotConverged:  # not near enough
                 pass
-        if start is not None:
-            try:
-                return self._balance(motions, laws, friction).solve(load, start=start, tolerance=BALANCED)
-            except NotConverged:
-                pass
-        exact = [replace(motion, groups=None) for motion in motions]
-        return self._balance(exact, laws, friction).solve(load, tolerance=BALANCED)
-
-    def equilibrium_from(
-        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None
-    ) -> PreloadState:
-        """`equilibrium` where the basis grows and groups would not pay: secants from a start, with seven digits."""
-        if start is not None and min(map(len, self.weights)) >= GROUPED_FROM:
-            motions, load = self._motions(self.static_relative, 0), self.static_loads @ forces
-            light = [replace(m, groups=None, light=m.relative.astype(np.float32)) for m in motions]
-            secants = Secants(stiffness=self.matrices[0], joints=list(zip(light, laws, strict=True)), friction=friction)
-            found = secants.solve(load, np.concatenate([start, np.zeros(len(load) - len(start))]), SECANTS)
-            if found is not None:
-                return found
-        return self.equilibrium(laws, forces, friction, start)
-
-    def _balance(
-        self, motions: Sequence[ReducedMotion], laws: Sequence[JointLaw], friction: Sequence[float | None]
-    ) -> ReducedEquilibrium:
-        return ReducedEquilibrium(self.matrices[0], list(zip(motions, laws, strict=True)), friction=friction)
+        return ReducedEquilibrium(self.matrices[0], joints, friction=friction).solve(load, tolerance=BALANCED)
 
     def springs(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Springs[ReducedMotion]]:
         """Springs of all joints under pressures [Pa], one array for each joint."""
-        motions = self._motions(self.dynamic_relative, 1)
+        motions = self._motions(self.dynamic_relative)
         return [law.springs(motion, p) for motion, law, p in zip(motions, laws, pressures, strict=True)]
 
     def modes(
@@ -296,8 +266,6 @@ class ReducedModel:
         """
         from scipy.linalg import eigh
 
-        if any(s.interface.groups is not None for s in springs):
-            return self._spanned(springs)
         _, K, M = self.matrices
         K = K + sum(s.stiffness() for s in springs)
         real, shapes = eigh(K, M)
@@ -310,48 +278,12 @@ class ReducedModel:
         values, inner = _complex_modes(real, shapes.T @ loss @ shapes, self.count, slight)
         return values, shapes @ inner, estimate
 
-    @cached_property
-    def _normal(self) -> tuple[Array, Array]:
-        """A transformation (d, d) that makes the mass the identity, and the parts' stiffness (d, d) under it."""
-        from scipy.linalg import cholesky, solve_triangular
-
-        _, K, M = self.matrices
-        turn = solve_triangular(cholesky(M), np.eye(len(M)))
-        return turn, turn.T @ K @ turn
-
-    def _spanned(self, springs: Sequence[Springs[ReducedMotion]]) -> tuple[Complex, Complex, Array]:
-        """`modes` in the span of those by groups' seven digits, which are kept but for the energy of the parts."""
-        turn, K = self._normal
-        lossy = any(s.lossy for s in springs)
-        rough, wanted = K, min(self.count + (BLOCK if lossy else SPAN), len(K))
-        seen = [s.interface.relative if s.interface.groups is None else s.interface.groups.light for s in springs]
-        for s, motion in zip(springs, seen, strict=True):
-            rough = rough + turn.T @ _of_springs(s, motion, s.k_n, s.k_t) @ turn
-        near, shapes = (found[..., :wanted] for found in np.linalg.eigh(rough))  # sooner than a part of them
-        # the leading vectors of the basis are those of the first columns of `turn`, which is triangular
-        cut = slice(0, self.coarse)
-        coarser = np.linalg.eigvalsh(rough[cut, cut])
-        estimate = np.abs(coarser[: self.count] / near[: self.count] - 1) / 2
-        small, loss = shapes.T @ K @ shapes, np.zeros((wanted, wanted))
-        span = turn @ shapes
-        for s, motion in zip(springs, seen, strict=True):
-            moved = motion @ span.astype(motion.dtype)
-            small = small + _of_springs(s, moved, s.k_n, s.k_t)
-            if lossy:
-                loss = loss + _of_springs(s, moved, s.k_n * s.loss_n, s.k_t * s.loss_t)
-        real, inner = np.linalg.eigh(small)
-        if not lossy:
-            return real[: self.count].astype(complex), (span @ inner[:, : self.count]).astype(complex), estimate
-        values, mixed = _complex_modes(real, inner.T @ loss @ inner, self.count)
-        return values, span @ (inner @ mixed), estimate
-
     def evaluate(
         self,
         laws: Sequence[JointLaw],
         forces: Array,
         friction: Sequence[float | None],
         start: Array | None = None,
-        tolerance: float = SECANTS,
     ) -> Variant:
         """Evaluate one variant.
 
@@ -360,7 +292,6 @@ class ReducedModel:
             forces: Force of each bolt [N] (b,).
             friction: Coefficient of each joint [-], None where it sticks.
             start: `preload.displacement` of a like variant, from which the equilibrium is sought first.
-            tolerance: Imbalance [-] that is left where points are grouped.
 
         Raises:
             InputError: The forces fit no bolt, or are all zero.
@@ -368,7 +299,7 @@ class ReducedModel:
         """
         if np.shape(forces) != (self.static_loads.shape[1],):
             raise InputError(f"{np.size(forces)} bolt forces for {self.static_loads.shape[1]} bolts; give one for each")
-        found = self.equilibrium(laws, np.asarray(forces, dtype=float), friction, start, tolerance)
+        found = self.equilibrium(laws, np.asarray(forces, dtype=float), friction, start)
         values, shapes, estimate = self.modes(self.springs(laws, found.pressures))
         return Variant(
             shapes=shapes,

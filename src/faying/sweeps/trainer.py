@@ -125,7 +125,7 @@ class Trainer:
 
     def _learn(self, reduction: Reduction, points: Iterable[int]) -> None:
         """Tell the bases what points need of them."""
-        model, start = reduction.model.grouped(), None
+        model, start = reduction.model, None
         for index in points:
             self.report("compression", 0, 0)
             try:

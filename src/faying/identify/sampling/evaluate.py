@@ -29,7 +29,6 @@ from faying.typing import Array, Index
 TRAINED = 1.5e-4  # relative error of a frequency where the bases are trained
 # estimate of the error of a frequency up to which the bases do not grow for a sample; the error is less, mostly
 LIMIT = 7.5e-3
-BALANCED = 1e-6  # imbalance that samples are left with: a frequency is right to half of it
 CHUNK = 32  # samples evaluated in one go
 ROUNDS = 2  # of training at samples that the bases do not fit
 WORST = 4  # samples trained on in each round
@@ -86,7 +85,7 @@ class Evaluator:
             start = found[-1].preload.displacement if found else None
             if usual:
                 start = usual[load] if start is None else start + usual[load] - usual[load - 1]
-            found.append(model.evaluate(laws, forces, friction, start, BALANCED))
+            found.append(model.evaluate(laws, forces, friction, start))
         return model, found, laws
 
     def with_median(self, law: int) -> "Evaluator":
@@ -267,7 +266,7 @@ class Reduced:
         """What evaluates samples in the bases as they are."""
         builder = replace(self.trainer.builder, design=ensemble)
         if law not in self._work:
-            work = Evaluator(model=self.model.grouped(), builder=builder, seen=self.seen)
+            work = Evaluator(model=self.model, builder=builder, seen=self.seen)
             self._work[law] = work.with_median(law)
         return replace(self._work[law], builder=builder, test=ensemble.study.test)
 
