@@ -1,7 +1,5 @@
 # The public names. Each is imported when it is first used (lazy_loader reads this file).
 from . import contact as contact
-from .answer.level_curves import LevelCurves as LevelCurves
-from .answer.level_curves import level_curves as level_curves
 from .answer.run import run as run
 from .backbones.backbone import backbone as backbone
 from .bolt.bolt import Bolt as Bolt

@@ -382,21 +382,6 @@ def shaken(load=8e3, name="shaker"):
     )
 
 
-def level_curves():
-    """Ten modes that soften with their level, as `faying backbone --quick` has them."""
-    levels, mode = np.geomspace(0.1, 100, 19)[:, None], np.arange(1, 13)
-    slip = 1e-5 * mode * levels**0.9
-    return faying.LevelCurves(
-        title="two boxes, flange_1",
-        load=8e3,
-        friction=(0.2,),
-        levels=levels[:, 0],
-        frequencies=300.0 * mode * (1 - slip),
-        damping=1e-3 + slip,
-        error=0 * slip,
-    )
-
-
 def two_curves():
     return backbone.figure([curve(), replace(curve(), friction=(0.4,))], [measured_points()])
 
@@ -413,7 +398,6 @@ FIGURES = {
     "result/vibration.py:life_figure": lambda: vibration.life_figure(
         [shaken(load, name) for load in (5e3, 8e3) for name in ("shaker", "transport by road")]
     ),
-    "answer/level_curves.py:plot": lambda: whole(level_curves().plot()),
     "result/difference.py:differences": lambda: difference.differences(
         compare_runs(result(), two_boxes(names=("flange_1",)))
     ),

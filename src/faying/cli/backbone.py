@@ -1,7 +1,6 @@
 """faying backbone STUDY.toml --friction 0.2"""
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -35,11 +34,6 @@ from faying.units import in_mm
 @click.option("--harmonics", type=click.IntRange(1, 9), help="Highest harmonic of the motion; 1 is quick [3].")
 @click.option("--rest-damping", metavar="RATIO", help='Ratio to critical that is added, for example 0.001, or "law".')
 @click.option("--coulomb", is_flag=True, help="One slider at each point in place of the law's own curve.")
-@click.option(
-    "--quick",
-    is_flag=True,
-    help="Curves of all modes by secant passes, without harmonics; --mode compares one with harmonic balance.",
-)
 @click.option("--measured", multiple=True, type=PATH, help="CSV of measured points to draw.")
 @click.option("--out", type=PATH, help="NetCDF file (default: backbone.nc in the folder that run writes to).")
 @click.option("--plot", type=FILE, help="Draw the curves (svg, png, pdf).")
@@ -62,9 +56,6 @@ def command(study: Path, **options: Any) -> None:
     measured = [MeasuredBackbone.read(path) for path in options["measured"]]
     plan = Study.read_bolted(study)
     choice, loads = asked(plan, options)
-    if options["quick"]:
-        _quick(plan, choice, loads, options)
-        return
     out = out or plan.results / "backbone.nc"
     progress = Shown("backbone", options["progress"])
     with new_folder(out.parent, "give another file with --out"), progress as report:
@@ -78,37 +69,6 @@ def command(study: Path, **options: Any) -> None:
         lambda: "\n".join(map(text, curves)),
         files,
     )
-
-
-def _quick(plan: Any, choice: Any, loads: list[int], options: dict[str, Any]) -> None:
-    """Curves of all modes under one preload, printed and written as CSV; with harmonic balance of one mode if asked."""
-    from faying.answer.level_curves import balanced_rows, level_curves, rows
-    from faying.backbones.backbone import backbones
-    from faying.output import table
-    from faying.style import save
-
-    unused = [name for name in ("at", "law", "measured") if options[name]]
-    unused += ["coulomb"] * options["coulomb"]
-    if unused or len(loads) > 1 or len(choice.friction) > 1:
-        which = ", ".join(f"--{name}" for name in unused) or "several preloads or frictions"
-        raise InputError(f"--quick has curves of all modes under one preload and one friction; leave out {which}")
-    out = options["out"] or plan.results / "level-curves.csv"
-    if out.suffix != ".csv":
-        raise InputError(f"--out {out}: the curves of --quick are written as CSV; end the name in .csv")
-    study, curve = replace(plan, backbone=choice), None
-    with new_folder(out.parent, "give another file with --out"), Shown("backbone", options["progress"]) as report:
-        curves = level_curves(study, load=plan.loads[loads[0]], report=report)
-        if options["mode"] is not None:
-            (curve,) = backbones(study, choice, loads=loads, report=report)
-        files = [curves.to_csv(out)]
-    if options["plot"]:
-        files.append(save(curves.plot()[0].figure, options["plot"]))
-    tree = curves.to_dict()
-    shown = folded(f"{curves.summary()[0]}: frequency [Hz], damping [%]\n\n{table.text(rows(curves))}")
-    if curve is not None:
-        tree["curves"] = [curve.to_dict()]
-        shown += f"\n\nmode {curve.mode}, harmonics 0 to {curve.harmonics}\n{table.text(balanced_rows(curves, curve))}"
-    show(options["as_json"], lambda: tree, lambda: shown, files)
 
 
 def asked(plan: Any, options: dict[str, Any]) -> tuple[Any, list[int]]:
