@@ -231,6 +231,12 @@ class VariantBuilder:
         joints = self.design.point(index).study.joints
         return [place.gap(joint.form) for place, joint in zip(self.places, joints, strict=True)]
 
+    @property
+    def modelled_gaps(self) -> list[Array] | None:
+        """Gap [m] (q,) of each joint under the form of the study; None where no form varies."""
+        places = zip(self.places, self.design.study.joints, strict=True) if self.places else ()
+        return [place.gap(joint.form) for place, joint in places] or None
+
     def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
         """Law of each joint, force of each bolt [N] and friction of each joint at one point."""
         point = self.design.point(index)

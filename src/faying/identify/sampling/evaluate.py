@@ -73,11 +73,15 @@ class Evaluator:
         nothing |= dict.fromkeys(OF_LOADS, np.full(ensemble.loads, np.nan))
         return rows_of(samples, self._one, {**nothing, "modes": np.full(tested, np.nan)})
 
-    def solved(self, sample: int) -> tuple[ReducedModel, list[Variant], list[JointLaw]]:
-        """One sample at all loads, with the model under its form and scales, and its laws."""
+    def solved(self, sample: int, *, drawn: bool = True) -> tuple[ReducedModel, list[Variant], list[JointLaw]]:
+        """One sample at all loads, with the model under its form and scales, and its laws.
+
+        drawn: whether with its own draw of waves, or with the form of the study.
+        """
         ensemble, builder = self.ensemble, self.builder
         first = (ensemble.training + sample) * ensemble.loads
         model = builder.model_at(self.model, first)
+        model = model if drawn else model.with_gaps(builder.modelled_gaps)
         found: list[Variant] = []
         usual = [one.preload.displacement for one in self.median]
         for load in range(ensemble.loads):
@@ -89,11 +93,14 @@ class Evaluator:
         return model, found, laws
 
     def with_median(self, law: int) -> "Evaluator":
-        """The same, with the median under one of the laws, or the first sample that has an answer."""
+        """The same, with the median under one of the laws, or the first sample that has an answer.
+
+        Its faces have the form of the study: a draw of waves has modes of its own, and none is the middle of all.
+        """
         training = self.ensemble.training
         for sample in (law - training, *range(-training, self.ensemble.count)):
             try:
-                return replace(self, median=tuple(self.solved(sample)[1]))
+                return replace(self, median=tuple(self.solved(sample, drawn=False)[1]))
             except FayingError:
                 continue
         return self
