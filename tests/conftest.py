@@ -23,6 +23,18 @@ if "FAYING_CACHE" not in os.environ:
     atexit.register(shutil.rmtree, os.environ["FAYING_CACHE"], ignore_errors=True)
 
 
+def pytest_addoption(parser):
+    parser.addoption("--half", choices=("0", "1"), help="every other test, from the first or second")
+
+
+def pytest_collection_modifyitems(config, items):
+    half = config.getoption("half")
+    if half is not None:
+        chosen = items[int(half) :: 2]
+        config.hook.pytest_deselected(items=[item for item in items if item not in set(chosen)])
+        items[:] = chosen
+
+
 @pytest.fixture
 def published(request):
     """Compare with a published number, and put it into the site's table where that is asked for."""

@@ -38,7 +38,7 @@ def test_200_mutated_inputs_of_whole_commands(seeds):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(31, 36))
-def test_5000_mutated_inputs_are_read_or_refused_in_words(seeds, seed):
+@pytest.mark.parametrize("seed", [31, 32])
+def test_2000_mutated_inputs_are_read_or_refused_in_words(seeds, seed):
     folder, files = seeds
     assert [a for a in run(files, folder, 1000, seed=seed) if a.bad] == []

@@ -9,8 +9,7 @@ from tests.fuzz.kills import Kill, campaign
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks for processes in /proc")
-@pytest.mark.parametrize("seed", [3, 4])
-def test_20_kills_over_all_commands_and_two_of_each_at_once(tmp_path, seed):
-    found = list(campaign(tmp_path, 20, seed))
+def test_20_kills_over_all_commands_and_two_of_each_at_once(tmp_path):
+    found = list(campaign(tmp_path, 20, seed=3))
     assert len([one for one in found if isinstance(one, Kill)]) == 20
     assert [one for one in found if not isinstance(one, Kill) or one.fault] == []

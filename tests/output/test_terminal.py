@@ -14,9 +14,8 @@ from faying.study import Study
 from tests.helpers.examples import copied
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-STUDIES = sorted(
-    path for path in EXAMPLES.glob("*/*.toml") if path.name not in ("measured-form.toml", "flat.toml", "laws.toml")
-)
+ALIKE = ("measured-form.toml", "flat.toml", "laws.toml", "uncertain.toml", "laws-evidence.toml")  # print as others
+STUDIES = sorted(path for path in EXAMPLES.glob("*/*.toml") if path.name not in ALIKE)
 
 
 def wide(printed: str) -> list[str]:
