@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.decks.raw import RawMesh, face_blocks, from_edges, gathered, index, understood
+from faying.decks.raw import RawMesh, face_blocks, gathered, index, understood
 from faying.errors import ReadError
+from faying.fe.elements import from_edges
 from faying.typing import Array, Index
 
 _KINDS = {4: ("tet4", 4), 5: ("hex8", 8), 6: ("wedge6", 6), 11: ("tet10", 10), 17: ("hex20", 20), 18: ("wedge15", 15)}

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from faying.errors import InputError, ReadError
-from faying.fe.elements import KINDS, SOLIDS
+from faying.fe.elements import SOLIDS
 from faying.memory import available
 from faying.text import few
 from faying.typing import Array, Index
@@ -153,13 +153,6 @@ def undoubled(nodes: list[int], what: str) -> tuple[str, list[int]]:
         return ("tet10" if quadratic else "tet4"), [nodes[i] for i in pick]
     shape = "a pyramid" if different == 5 else f"a solid of {different} corners"
     raise ReadError(f"{what} is {shape}; mesh with tetrahedra, wedges or bricks")
-
-
-def from_edges(kind: str, edges: tuple[tuple[int, int], ...]) -> list[int]:
-    """Order that turns a list of nodes whose middle nodes follow `edges` into VTK's order."""
-    corners = KINDS[kind].corners
-    place = {frozenset(edge): corners + i for i, edge in enumerate(edges)}
-    return [*range(corners), *(place[frozenset(edge)] for edge in KINDS[kind].edges)]
 
 
 def read_text(path: Path, what: str) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 
 from faying.cache import kept
 from faying.errors import InputError
-from faying.fe.elements import KINDS
+from faying.fe.elements import from_edges
 from faying.fe.mesh import Mesh
 from faying.fe.solids import split_at_joints
 from faying.fe.straighten import straightened
@@ -32,13 +32,9 @@ ELEMENTS, UNKNOWNS = 5.0, 4.5
 GRADING = 0.4  # growth of elements away from where they are fine
 TRIES = ((1.0, GRADING), (0.8, 0.3), (0.6, 0.2))  # size over that asked for, and grading, until the mesher has a mesh
 STORED = 3  # version of what the cache holds; it rises with any change of what this module makes of a file
-# netgen numbers the middle nodes by these edges; VTK, and so we, by those of its element
-_NETGEN_EDGES = {"tet10": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)), "tri6": ((1, 2), (0, 2), (0, 1))}
-
-
-def _to_vtk(kind: str) -> list[int]:
-    edges = [_NETGEN_EDGES[kind].index((min(edge), max(edge))) for edge in KINDS[kind].edges]
-    return [*range(KINDS[kind].corners), *(KINDS[kind].corners + i for i in edges)]
+# netgen numbers the middle nodes by these edges
+TET10 = from_edges("tet10", ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)))
+TRI6 = from_edges("tri6", ((1, 2), (0, 2), (0, 1)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -269,7 +265,7 @@ def _label_pieces(
 def _collect(mesh: Any, parts: list[str], labels: Labels, notes: Sequence[Note]) -> dict[str, Any]:
     points = np.asarray(mesh.Coordinates(), float) * 1e-3
     tets = mesh.Elements3D().NumPy()
-    cells = tets["nodes"][:, :10].astype(np.int64)[:, _to_vtk("tet10")] - 1
+    cells = tets["nodes"][:, :10].astype(np.int64)[:, TET10] - 1
     domain = tets["index"].astype(np.int64) - 1
     corners = points[cells[:, :4]]
     if np.mean(np.linalg.det(corners[:, 1:] - corners[:, :1])) < 0:
@@ -286,7 +282,7 @@ def _collect(mesh: Any, parts: list[str], labels: Labels, notes: Sequence[Note])
     face_part: dict[str, str] = {}
     for number in range(1, len(names) + 1):
         for label, part in labels[int(names[number - 1])]:
-            tri = tris["nodes"][face_of == number][:, :6].astype(np.int64)[:, _to_vtk("tri6")] - 1
+            tri = tris["nodes"][face_of == number][:, :6].astype(np.int64)[:, TRI6] - 1
             face_part[label] = part
             owner[label] = parts.index(part)
             triangles[label] = np.concatenate([triangles[label], tri]) if label in triangles else tri

@@ -12,3 +12,10 @@ KINDS: dict[str, Element] = {
 }
 SOLIDS = {element.count: element for element in KINDS.values() if element.dimension == 3}
 FACES = {element.count: element for element in KINDS.values() if element.dimension == 2}
+
+
+def from_edges(kind: str, edges: tuple[tuple[int, int], ...]) -> list[int]:
+    """Order that turns a list of nodes whose middle nodes follow `edges` into VTK's order."""
+    corners = KINDS[kind].corners
+    place = {frozenset(edge): corners + i for i, edge in enumerate(edges)}
+    return [*range(corners), *(place[frozenset(edge)] for edge in KINDS[kind].edges)]
