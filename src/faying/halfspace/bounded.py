@@ -362,7 +362,7 @@ class _Search:
             cells = left
             if few or left.size < 2:
                 break
-            level = -total(cells.values(g)) / cells.size
+            level = -total(g[cells.mask]) / cells.size
         if least < 0 or first is None:
             return least < 0
         for share in HALVES:
@@ -378,7 +378,7 @@ class _Search:
         """What to add to the tractions of the cells so that their gaps close; None where nothing is to do."""
         if cells.size < 2:
             return None
-        G = cells.values(g) + level
+        G = g[cells.mask] + level
         largest = float(np.max(np.abs(G)))
         if largest == 0.0:
             return None
@@ -414,7 +414,7 @@ class _Search:
         self, x: AnyArray, g: AnyArray, cells: Cells, way: AnyArray, level: float
     ) -> tuple[AnyArray, AnyArray, float, Cells, float]:
         """Go that way and project; returns x, g, change of energy, cells between their bounds, doubt about g."""
-        old, lower, upper = cells.values(x), _at(self.lower, cells.mask), _at(self.upper, cells.mask)
+        old, lower, upper = x[cells.mask], _at(self.lower, cells.mask), _at(self.upper, cells.mask)
         new = project(old + way, lower, upper, total(old))[0]
         out = x.copy()
         out[cells.mask] = new
@@ -423,5 +423,5 @@ class _Search:
         new -= old
         del old
         after, curvature, doubt = self._added(cells, new, g)
-        change = dot(cells.values(g) + level, new) + curvature / 2
+        change = dot(g[cells.mask] + level, new) + curvature / 2
         return out, after, change, Cells(self.kernel, left), doubt

@@ -1,6 +1,5 @@
 """A set of cells of a map: values on it, sums over coarse blocks of it, and products of a kernel between its cells."""
 
-from functools import cached_property
 from itertools import accumulate
 from typing import Any, final
 
@@ -25,10 +24,6 @@ class Cells:
         self.starts = [0, *accumulate(self.counts)]
         self.size = self.starts[-1]
 
-    def values(self, field: AnyArray) -> AnyArray:
-        """Values of a flat map on the cells."""
-        return field[self.mask]
-
     def block(self, values: AnyArray, i: int) -> AnyArray | None:
         """Rows `kernel.rows[i]` of the map that has these values on the cells and 0 elsewhere; None if all are 0."""
         if not self.counts[i]:
@@ -47,11 +42,6 @@ class Cells:
 
         self.kernel.stream(table, lambda k, i: self.block(values[k, :], i), write, needed=[c > 0 for c in self.counts])
         return out
-
-    @cached_property
-    def coarse(self) -> "Blocks":
-        """Coarse blocks of the map, as the cells see them."""
-        return Blocks(self)
 
 
 @final

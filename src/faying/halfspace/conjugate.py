@@ -19,7 +19,7 @@ from typing import final
 import numpy as np
 
 from faying.halfspace.arrays import add_times, dot, total
-from faying.halfspace.cells import Cells
+from faying.halfspace.cells import Blocks, Cells
 from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray, Array
 
@@ -35,27 +35,22 @@ GROWTH = 1e4  # of the residual squared, beyond which only rounding is left of i
 class _Coarse:
     """The smooth part of one component: K, E and Z for given stiffnesses c of the cells."""
 
-    def __init__(self, kernel: Kernel, cells: Cells, c: AnyArray) -> None:
-        self.blocks, self.c = cells.coarse, c
-        shape = self.blocks.shape
-        stiffness = self.blocks.sums(c)
-        self.stiffness = np.where(stiffness > 0, stiffness, 0.0)
+    def __init__(self, kernel: Kernel, blocks: Blocks, c: AnyArray) -> None:
+        self.blocks, self.c = blocks, c
+        shape = blocks.shape
+        self.stiffness = np.maximum(blocks.sums(c), 0.0)
         self.whole = float(np.sum(self.stiffness))
         self.mean = self.whole / (shape[0] * shape[1])
-        E = _symbol(kernel, shape)
-        self.E, self.near_inverse = E, (1 / (E + self.mean))
+        self.E = _symbol(kernel, shape)
+        self.near_inverse = 1 / (self.E + self.mean)
         self.inverse: AnyArray | None = None
         if shape[0] * shape[1] <= DENSE:
-            matrix = _circulant(E, shape) + np.diag(self.stiffness.ravel())
-            self.inverse = np.linalg.inv(matrix)
-
-    def apply_E(self, field: AnyArray) -> AnyArray:
-        return _convolve(field, self.E)
+            self.inverse = np.linalg.inv(_circulant(self.E, shape) + np.diag(self.stiffness.ravel()))
 
     def solve(self, right: AnyArray) -> AnyArray:
         """K times a field of the blocks, its mean exact."""
         if self.inverse is not None:
-            y = np.reshape(self.inverse @ np.reshape(right, (-1,)), self.blocks.shape)
+            y = (self.inverse @ right.ravel()).reshape(right.shape)
         else:
             y = self._iterated(right)
         return y + float(np.sum(right) - np.sum(self.stiffness * y)) / self.whole
@@ -115,11 +110,11 @@ class CellSystem:
         components = kernel.components
         self.kernel, self.cells = kernel, cells
         self.used = 0
-        self.coarse = []
+        self.coarse, blocks = [], Blocks(cells)
         for k in range(components):
             unit = np.zeros((components, cells.size), dtype=np.float32)
             unit[k, :] = 1.0
-            self.coarse.append(_Coarse(kernel, cells, self._inverse(unit)[k, :]))
+            self.coarse.append(_Coarse(kernel, blocks, self._inverse(unit)[k, :]))
 
     def apply(self, v: AnyArray) -> AnyArray:
         """The operator times v."""
@@ -132,24 +127,21 @@ class CellSystem:
 
     def with_totals(self, totals: Array) -> AnyArray:
         """Tractions that have these totals."""
-        shares = [float(t) / total(part.c) * part.c for t, part in zip(totals, self.coarse, strict=True)]
-        return np.stack(shares)
+        return np.stack([float(t) / total(part.c) * part.c for t, part in zip(totals, self.coarse, strict=True)])
 
     def energy(self, residual: AnyArray, size: float) -> float:
         """About the energy of the error that leaves size times this residual (c, cells)."""
-        flat = (-1,)
-        z = self.preconditioned(residual)
-        return size**2 * dot(np.reshape(residual, flat), np.reshape(z, flat))
+        return size**2 * dot(residual.ravel(), self.preconditioned(residual).ravel())
 
     def preconditioned(self, r: AnyArray) -> AnyArray:
         """The module's A^-1 times r."""
         smooth = [part.solve(part.blocks.sums(r[k, :], part.c)) for k, part in enumerate(self.coarse)]
-        z = np.asarray(r, copy=True)
+        z = r.copy()
         for k, (part, u) in enumerate(zip(self.coarse, smooth, strict=True)):
             part.blocks.take_off(z, k, u)
         z = self._inverse(z)
         for k, (part, u) in enumerate(zip(self.coarse, smooth, strict=True)):
-            y = part.solve(part.blocks.sums(z[k, :]) - part.apply_E(u))
+            y = part.solve(part.blocks.sums(z[k, :]) - _convolve(u, part.E))
             part.blocks.take_off(z, k, y, part.c)
         return z
 
@@ -162,21 +154,20 @@ def constrained_gradients(
     residual and s of shape (c, cells), totals (c,). Stops where the last turn has gained less energy than
     reduction^2 of all that was gained, or after `limit` turns. A bad solve does no harm: callers measure what they get.
     """
-    flat = (-1,)
-    s = np.zeros(tuple(residual.shape), dtype=np.float32)
-    r = np.asarray(residual, copy=True)
+    s = np.zeros(residual.shape, dtype=np.float32)
+    r = residual.copy()
     if np.any(totals != 0):
         s = system.with_totals(totals)
         r -= system.apply(s)
     r -= np.mean(r, axis=1, keepdims=True)
     t = system.preconditioned(r)
-    rz = first = dot(np.reshape(r, flat), np.reshape(t, flat))
+    rz = first = dot(r.ravel(), t.ravel())
     gained = 0.0
     for turn in range(limit):
         if rz <= 0:
             break
         q = system.apply(t)
-        curvature = dot(np.reshape(t, flat), np.reshape(q, flat))
+        curvature = dot(t.ravel(), q.ravel())
         if curvature <= 0:
             break
         along = rz / curvature
@@ -188,7 +179,7 @@ def constrained_gradients(
         q *= along
         r -= q
         q = system.preconditioned(r)
-        new = dot(np.reshape(r, flat), np.reshape(q, flat))
+        new = dot(r.ravel(), q.ravel())
         if new >= GROWTH * first:
             break
         t *= new / rz

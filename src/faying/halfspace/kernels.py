@@ -58,9 +58,7 @@ class Kernel:
     def own(self) -> float:
         """Displacement of a cell under unit traction on itself: the operator's diagonal (first component)."""
         # a table holds each wave number once that stands four times among all, twice on its borders
-        weight = [
-            np.where((np.arange(n // 2 + 1) == 0) | (2 * np.arange(n // 2 + 1) == n), 1.0, 2.0) for n in self.padded
-        ]
+        weight = [np.where(np.isin(np.arange(n // 2 + 1), (0, n / 2)), 1.0, 2.0) for n in self.padded]
         return float(weight[0] @ self.symbol[0, 0] @ weight[1] / (self.padded[0] * self.padded[1]))
 
     @cached_property
@@ -180,12 +178,12 @@ def shear_kernel(
         parts = {k: ((k != "xy") - nu * v / q**2) / (G * q) for k, v in along.items()}
         for part in parts.values():
             part[0, 0] = 0.0
+        # at the highest wave number q and -q are one point: an odd product has no real-valued counterpart there
+        for product, length in zip((parts["xy"], parts["xy"].T), padded, strict=True):
+            if length % 2 == 0:
+                product[length // 2] = 0.0
     else:
         parts = _cerruti(padded, aspect, nu, G)
-    for axis, length in ((0, padded[0]), (1, padded[1])):
-        # at the highest wave number q and -q are one point: an odd product has no real-valued counterpart there
-        if periodic and length % 2 == 0:
-            parts["xy"][(length // 2, slice(None)) if axis == 0 else (slice(None), length // 2)] = 0.0
     base = 2 * G * _inverse(q)
     inverse = {k: base * ((k != "xy") + nu / (1 - nu) * v / q**2) for k, v in along.items()}
     if not vector:
@@ -203,14 +201,13 @@ def _assembled(
     arithmetic: Arithmetic,
 ) -> Kernel:
     symbol, inverse = tables
-    single = np.float32
     return Kernel(
         shape=shape,
         padded=padded,
         aspect=aspect,
         symbol=symbol,
-        symbol_single=np.asarray(symbol.astype(np.float32), dtype=single),
-        inverse=np.asarray(inverse.astype(np.float32), dtype=single),
+        symbol_single=symbol.astype(np.float32),
+        inverse=inverse.astype(np.float32),
         strength=strength,
         arithmetic=arithmetic,
     )

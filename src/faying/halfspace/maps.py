@@ -90,19 +90,14 @@ class ContactMaps(Summary):
 
     def _border(self, touching: Mask, other: Mask) -> float:
         """Length of the cell sides between `touching` and `other` points, per map area [1/m]."""
-        sides = []
-        for axis in (1, 0):
-            if self.periodic:
-                next_touching, next_other = np.roll(touching, -1, axis), np.roll(other, -1, axis)
-                here_touching, here_other = touching, other
-            else:
-                edge = [(1, 1) if k == axis else (0, 0) for k in (0, 1)]
-                a, b = np.pad(touching, edge), np.pad(other, edge, constant_values=True)
-                here_touching, next_touching = (np.take(a, range(k, a.shape[axis] - 1 + k), axis) for k in (0, 1))
-                here_other, next_other = (np.take(b, range(k, b.shape[axis] - 1 + k), axis) for k in (0, 1))
-            sides.append(int(np.count_nonzero((here_touching & next_other) | (here_other & next_touching))))
         (ny, nx), (dx, dy) = touching.shape, self.spacing
-        return float((sides[0] * dy + sides[1] * dx) / (nx * ny * dx * dy))
+        if not self.periodic:  # a frame that does not touch
+            touching, other = np.pad(touching, 1), np.pad(other, 1, constant_values=True)
+        down, across = (
+            np.count_nonzero((touching & np.roll(other, -1, axis)) | (other & np.roll(touching, -1, axis)))
+            for axis in (0, 1)
+        )
+        return float((across * dy + down * dx) / (nx * ny * dx * dy))
 
     @property
     def perimeter(self) -> float:

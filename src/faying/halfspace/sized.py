@@ -7,7 +7,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.halfspace.solution import HalfSpaceContact
 from faying.halfspace.solve import spread_map
-from faying.halfspace.spots import SizeLaw
+from faying.hardness import VickersHardness
 from faying.typing import Array
 
 FULL_PASSES = 6  # after these the hardness of a point only falls
@@ -19,7 +19,7 @@ def solve_with_size(
     solve: Callable[[Array, HalfSpaceContact | None], HalfSpaceContact],
     shape: tuple[int, int],
     spacing: tuple[float, float],
-    law: SizeLaw,
+    law: VickersHardness,
     start: HalfSpaceContact | None,
 ) -> HalfSpaceContact:
     """Solve a contact whose hardness is, at every spot, the one that its own size has.

@@ -46,7 +46,12 @@ def slip_of(contact: ContactMaps, shear_ratio: float, friction: float, *, tol: f
 
     Raises InputError for a shear_ratio outside [0, 1) or a friction coefficient that is not positive.
     """
-    _check(shear_ratio, friction)
+    number(friction, "friction", least=0)
+    if number(shear_ratio, "shear_ratio", least=0, ends="[)") >= 1:
+        raise InputError(
+            f"shear_ratio = {shear_ratio}: at T = mu F and above the joint slips everywhere; "
+            "lower the shear load or raise the preload"
+        )
     shape, dx = contact.heights.shape, contact.spacing[0]
     touching, arithmetic = contact.traction > 0, contact.arithmetic
     kernel = shear_kernel(
@@ -90,13 +95,3 @@ def slip_of(contact: ContactMaps, shear_ratio: float, friction: float, *, tol: f
         loss_factor=loss / (pi * mean * moved),
         residual=found.residual,
     )
-
-
-def _check(shear_ratio: float, friction: float) -> None:
-    number(friction, "friction", least=0)
-    number(shear_ratio, "shear_ratio", least=0, ends="[)")
-    if shear_ratio >= 1:
-        raise InputError(
-            f"shear_ratio = {shear_ratio}: at T = mu F and above the joint slips everywhere; "
-            "lower the shear load or raise the preload"
-        )

@@ -3,10 +3,13 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, final
 
+import numpy as np
+
 from faying.halfspace.figure import contact_map, pressure_map
+from faying.halfspace.kernels import normal_kernel, shear_kernel
 from faying.halfspace.maps import ContactMaps
 from faying.halfspace.slip import Slip, slip_of
-from faying.halfspace.tangent import Tangent, normal_stiffness_of, tangent_of, tangential_stiffness_of
+from faying.halfspace.tangent import Tangent, stiffness_on
 from faying.style import axes_of
 from faying.typing import Array
 
@@ -54,15 +57,28 @@ class HalfSpaceContact(ContactMaps):
 
     def tangent(self) -> Tangent:
         """Stiffness of this contact against further loading, unloading and shear without slip (see `Tangent`)."""
-        return tangent_of(self)
+        unloading = self.normal_stiffness(loading=False)
+        saturated = bool(self.at_hardness.any())
+        tensor = self.tangential_stiffness()
+        return Tangent(
+            k_n_loading=self.normal_stiffness(loading=True) if saturated else unloading,
+            k_n_unloading=unloading,
+            k_t=float(np.trace(tensor)) / 2,
+            k_tensor=tensor,
+        )
 
     def normal_stiffness(self, *, loading: bool) -> float:
         """k_n_loading or k_n_unloading of `Tangent` alone [Pa/m]."""
-        return normal_stiffness_of(self, loading=loading)
+        shape, (dx, dy) = self.heights.shape, self.spacing
+        kernel = normal_kernel(shape, dy / dx, periodic=self.periodic, arithmetic=self.arithmetic)
+        cells = (self.traction > 0) & ~self.at_hardness if loading else self.traction > 0
+        return float(stiffness_on(kernel, cells)[0, 0]) * self.E_star / dx
 
     def tangential_stiffness(self) -> Array:
         """k_tensor of `Tangent` alone [Pa/m], shape (2, 2): shear without slip along x and y, and their coupling."""
-        return tangential_stiffness_of(self)
+        shape, (dx, dy) = self.heights.shape, self.spacing
+        kernel = shear_kernel(shape, dy / dx, self.nu, periodic=self.periodic, arithmetic=self.arithmetic)
+        return stiffness_on(kernel, self.traction > 0) * self.E_star / dx
 
     def slip(self, shear_ratio: float, friction: float, *, tol: float = 1e-6) -> Slip:
         """Partial slip under a tangential load of shear_ratio times friction times the normal load (see `Slip`)."""

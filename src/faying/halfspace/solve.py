@@ -90,7 +90,11 @@ def solve_half_space(
     if displacement is not None:
         return _at_displacement(problem, number(displacement, "displacement", "m", least=0, ends="[)"), first)
     pressure = number(pressure, "pressure", "Pa", least=0, ends="[)")
-    _check_pressure(pressure, limit)
+    if limit is not None and pressure >= (most := float(np.mean(limit))):
+        raise InputError(
+            f"pressure {pressure:.4g} Pa is not below the hardness {most:.4g} Pa: all of the map would be "
+            "at hardness and flow; lower the load or check the units"
+        )
     return problem.at(pressure / E_star, first)
 
 
@@ -173,13 +177,10 @@ class _Pressing:
     def _fine(self, found: Array, shape: tuple[int, ...]) -> AnyArray:
         return np.asarray(spread_map(found, shape).ravel(), dtype=self.options.arithmetic.real)
 
-    def _minimise(self, on: _Map, mean: float, start: Start | None) -> Minimum:
-        finest = on is self.map
-        options, arithmetic = self.options, self.options.arithmetic
-        problem = Problem(
-            kernel=normal_kernel(
-                (on.h.shape[0], on.h.shape[1]), on.aspect, periodic=options.periodic, arithmetic=arithmetic
-            ),
+    def _problem(self, on: _Map, mean: float, arithmetic: Arithmetic) -> Problem:
+        rows, columns = on.h.shape
+        return Problem(
+            kernel=normal_kernel((rows, columns), on.aspect, periodic=self.options.periodic, arithmetic=arithmetic),
             load=on.h.ravel(),
             datum=self.top,
             unit=on.cell,
@@ -189,8 +190,11 @@ class _Pressing:
             # a smooth flat has no roughness to measure by: take what its own load does to one cell
             scale=self.rms / on.cell if self.rms > 0 else mean,
         )
+
+    def _minimise(self, on: _Map, mean: float, start: Start | None) -> Minimum:
+        finest, options = on is self.map, self.options
         return minimise(
-            problem,
+            self._problem(on, mean, options.arithmetic),
             tol=options.tol if finest else max(options.tol, COARSE_TOLERANCE),
             start=start,
             # a start may be good enough for a coarse map and bad for the next; one step brings points to the hardness,
@@ -241,13 +245,22 @@ class _Pressing:
 
     def _certified(self, traction: Array, claimed: float) -> float:
         """The residual of pressures that have been rounded to single precision, in double precision."""
-        residual = _residual(self.heights, self.spacing, traction, self.map.limit, self.options)
+        residual = self.residual(traction)
         if residual >= self.options.tol > claimed:
             raise NotConverged(
                 f"half-space contact: single precision comes to residual {residual:.1e}, above the tolerance "
                 f'{self.options.tol:.1e}; ask for a larger tol, or for precision="double"'
             )
         return residual
+
+    def residual(self, traction: Array) -> float:
+        """Duality gap over load times rms height of pressures [Pa] cut to their bounds, in double precision."""
+        problem = self._problem(self.map, 0.0, Arithmetic(workers=self.options.arithmetic.workers))
+        most = problem.upper
+        x = np.clip(traction.ravel().astype(np.float64) / self.options.E_star, 0.0, most)
+        gradient = problem.gradient_at(x, 0.0, precise=True)[0]
+        gap = duality_gap(x, gradient, 0.0, most, best_level(x, gradient, 0.0, most))
+        return gap / (total(x) * self.rms / self.spacing[0])
 
 
 def error_bound(
@@ -271,30 +284,7 @@ def error_bound(
     if given.shape != h.shape or not (given > 0).any():
         raise InputError(f"traction of shape {given.shape}; give pressures above 0 on a map of shape {h.shape}")
     options = _Options(E_star=E_star, hardness=limit, nu=0.3, periodic=periodic, tol=0.5, arithmetic=Arithmetic())
-    return _residual(h, (dx, dy), given, np.inf if limit is None else limit / E_star, options)
-
-
-def _residual(
-    h: Array, spacing: tuple[float, float], traction: Array, limit: float | Array, options: _Options
-) -> float:
-    """Duality gap over load times rms height of pressures cut to their bounds, in double precision."""
-    arithmetic = Arithmetic(workers=options.arithmetic.workers)
-    ny, nx = h.shape
-    most = limit if isinstance(limit, float) else np.asarray(limit.ravel(), dtype=np.float64)
-    x = np.clip(np.asarray(traction.ravel(), dtype=np.float64) / options.E_star, 0.0, most)
-    problem = Problem(
-        kernel=normal_kernel((ny, nx), spacing[1] / spacing[0], periodic=options.periodic, arithmetic=arithmetic),
-        load=h.ravel(),
-        datum=float(h.max()),
-        unit=spacing[0],
-        lower=0.0,
-        upper=most,
-        mean=0.0,
-        scale=1.0,
-    )
-    gradient = problem.gradient_at(x, 0.0, precise=True)[0]
-    gap = duality_gap(x, gradient, 0.0, most, best_level(x, gradient, 0.0, most))
-    return gap / (total(x) * deviation(h.ravel()) / spacing[0])
+    return _Pressing(h, (dx, dy), options, None).residual(given)
 
 
 def _at_displacement(problem: _Pressing, displacement: float, start: Array | None) -> HalfSpaceContact:
@@ -387,14 +377,6 @@ def _checked_hardness(hardness: float | ArrayLike | None, shape: tuple[int, ...]
     if not np.all(np.isfinite(given) & (given > 0)):
         raise InputError(f"hardness = {given.min():.6g} Pa; it must be positive, or None for an elastic contact")
     return float(given) if given.ndim == 0 else _frozen(given.copy())
-
-
-def _check_pressure(pressure: float, hardness: float | Array | None) -> None:
-    if hardness is not None and pressure >= (most := float(np.mean(hardness))):
-        raise InputError(
-            f"pressure {pressure:.4g} Pa is not below the hardness {most:.4g} Pa: all of the map would be "
-            "at hardness and flow; lower the load or check the units"
-        )
 
 
 def memory_needed(shape: tuple[int, int], *, periodic: bool, precision: Precision = "double") -> float:

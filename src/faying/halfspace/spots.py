@@ -2,19 +2,12 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol, final
+from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from faying.hardness import VickersHardness
 from faying.typing import Array, Index, Mask
-
-
-class SizeLaw(Protocol):
-    """Hardness over the size of an indentation."""
-
-    def at(self, diagonal: ArrayLike) -> Array:
-        """Return the hardness [Pa] of indentations with these diagonals [m]."""
 
 
 @final
@@ -61,7 +54,7 @@ class Spots:
         radius = np.sqrt(self.points)
         return float(radius[self.points < points].sum() / radius.sum()) if self.count else 0.0
 
-    def hardness(self, law: SizeLaw) -> Array:
+    def hardness(self, law: VickersHardness) -> Array:
         """Hardness at each point [Pa] (ny, nx): of its spot, and of a spot of one point where it is open.
 
         An open point next to a spot takes the least hardness of its eight neighbours, so that the spot may grow.

@@ -8,8 +8,7 @@ import numpy as np
 from faying.errors import NotConverged
 from faying.halfspace.cells import Cells
 from faying.halfspace.conjugate import CellSystem, constrained_gradients
-from faying.halfspace.kernels import Kernel, normal_kernel, shear_kernel
-from faying.halfspace.maps import ContactMaps
+from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray, Array, Mask
 
 PASSES = 12
@@ -82,38 +81,3 @@ def _uneven(moved: AnyArray) -> tuple[AnyArray, float]:
     r = np.mean(moved, axis=1, keepdims=True) - moved
     size = float(np.max(np.abs(r))) or 1.0
     return np.astype(r / size, np.float32), size
-
-
-def normal_stiffness_of(contact: ContactMaps, *, loading: bool) -> float:
-    """Return one of the two normal stiffnesses [Pa/m]; see `HalfSpaceContact.normal_stiffness`."""
-    kernel = normal_kernel(
-        contact.heights.shape,
-        contact.spacing[1] / contact.spacing[0],
-        periodic=contact.periodic,
-        arithmetic=contact.arithmetic,
-    )
-    cells = contact.traction > 0
-    if loading:
-        cells &= ~contact.at_hardness
-    return float(stiffness_on(kernel, cells)[0, 0]) * contact.E_star / contact.spacing[0]
-
-
-def tangential_stiffness_of(contact: ContactMaps) -> Array:
-    """Return the stiffness against shear without slip [Pa/m], shape (2, 2); see `Tangent`."""
-    shape, aspect = contact.heights.shape, contact.spacing[1] / contact.spacing[0]
-    shear = shear_kernel(shape, aspect, contact.nu, periodic=contact.periodic, arithmetic=contact.arithmetic)
-    return stiffness_on(shear, contact.traction > 0) * contact.E_star / contact.spacing[0]
-
-
-def tangent_of(contact: ContactMaps) -> Tangent:
-    """Return the tangent stiffness of a contact; see `HalfSpaceContact.tangent`."""
-    k_unload = k_load = normal_stiffness_of(contact, loading=False)
-    if contact.hardness is not None and contact.at_hardness.any():
-        k_load = normal_stiffness_of(contact, loading=True)
-    tensor = tangential_stiffness_of(contact)
-    return Tangent(
-        k_n_loading=k_load,
-        k_n_unloading=k_unload,
-        k_t=float(np.trace(tensor)) / 2,
-        k_tensor=tensor,
-    )
