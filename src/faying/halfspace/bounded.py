@@ -217,7 +217,6 @@ class _Search:
         self.applications = 0
         self.x: AnyArray = problem.load
         self.bounded = _is_finite(self.upper)
-        self.varies = not isinstance(self.upper, (int, float))
         self.datum = 0.0
         self.g: AnyArray = problem.load  # until `run`
         self.doubt = 0.0  # what single precision may have left in g
@@ -324,7 +323,7 @@ class _Search:
             working = ((x > lower) & (x < upper)) | ((x <= lower) & (g < -level))
             if self.bounded:
                 working |= (x >= upper) & (g > -level)
-            if self.varies:
+            if not isinstance(upper, (int, float)):
                 working &= lower < upper
             out[s] = working
         return out

@@ -14,6 +14,7 @@ from math import pi
 from typing import final
 
 import numpy as np
+from scipy.fft import dctn, dstn, next_fast_len
 
 from faying.halfspace.arrays import Arithmetic
 from faying.typing import AnyArray, Array
@@ -128,8 +129,6 @@ def transform_shape(shape: tuple[int, int], *, periodic: bool) -> tuple[int, int
     """Size of the transforms: that of the map if periodic, else the next quick even size that keeps images apart."""
     if periodic:
         return shape
-    from scipy.fft import next_fast_len
-
     return 2 * next_fast_len(shape[0]), 2 * next_fast_len(shape[1], real=True)
 
 
@@ -150,9 +149,12 @@ def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, arit
     """
     padded = transform_shape(shape, periodic=periodic)
     q = wave_numbers(padded, aspect)[2]
-    symbol = 2 / q if periodic else _love(padded, aspect)
     if periodic:
+        symbol = 2 / q
         symbol[0, 0] = 0.0
+    else:
+        cell = _rectangle(padded, aspect)
+        symbol = _even((cell["xx"] + cell["yy"]) / pi)
     return _assembled(shape, padded, aspect, (symbol[None, None], _inverse(q)[None, None]), 2.0, arithmetic)
 
 
@@ -237,23 +239,14 @@ def _rectangle(padded: tuple[int, int], aspect: float) -> dict[str, Array]:
 
 def _even(lags: Array) -> Array:
     """Transform of a real map that is even both ways, from a quarter of it to a quarter."""
-    from scipy.fft import dctn
-
     return np.asarray(dctn(lags, type=1))
 
 
 def _odd(lags: Array) -> Array:
     """The same of a map that is odd both ways, 0 at half of its length."""
-    from scipy.fft import dstn
-
     out = np.zeros(lags.shape)
     out[1:-1, 1:-1] = -dstn(lags[1:-1, 1:-1], type=1)
     return out
-
-
-def _love(padded: tuple[int, int], aspect: float) -> Array:
-    cell = _rectangle(padded, aspect)
-    return _even((cell["xx"] + cell["yy"]) / pi)
 
 
 def _cerruti(padded: tuple[int, int], aspect: float, nu: float, G: float) -> dict[str, Array]:

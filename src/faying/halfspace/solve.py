@@ -178,9 +178,8 @@ class _Pressing:
         return np.asarray(spread_map(found, shape).ravel(), dtype=self.options.arithmetic.real)
 
     def _problem(self, on: _Map, mean: float, arithmetic: Arithmetic) -> Problem:
-        rows, columns = on.h.shape
         return Problem(
-            kernel=normal_kernel((rows, columns), on.aspect, periodic=self.options.periodic, arithmetic=arithmetic),
+            kernel=normal_kernel(on.h.shape, on.aspect, periodic=self.options.periodic, arithmetic=arithmetic),
             load=on.h.ravel(),
             datum=self.top,
             unit=on.cell,
@@ -299,16 +298,12 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
             f"displacement {displacement:.4g} m closes every gap of this periodic map; its full contact comes "
             f"at {deepest:.4g} m; give less, or give the pressure"
         )
-    contacts: dict[float, HalfSpaceContact] = {}
-    last = start
+    last: dict[float, HalfSpaceContact] = {}  # by ln(pressure)
 
     def miss(log_p: float) -> float:
-        nonlocal last
-        contact = problem.at(float(np.exp(log_p)), last)
-        contacts.clear()
-        contacts[log_p] = contact
-        last = contact.traction
-        return (contact.approach - displacement) / displacement
+        first = last.popitem()[1].traction if last else start
+        last[log_p] = problem.at(float(np.exp(log_p)), first)
+        return (last[log_p].approach - displacement) / displacement
 
     most = float(np.mean(problem.map.limit))  # a mean pressure over E* at which every point is at hardness
     ceiling = np.log(most * (1 - 1e-9))
@@ -327,9 +322,9 @@ def _at_displacement(problem: _Pressing, displacement: float, start: Array | Non
         high = min(high + 2, ceiling)
         above = miss(high)
     root = low if below == 0 else high if above == 0 else float(brentq(miss, low, high, xtol=1e-10, rtol=1e-12))
-    if root not in contacts:
+    if root not in last:
         miss(root)
-    return contacts[root]
+    return last[root]
 
 
 def _checked_map(
@@ -389,8 +384,8 @@ def memory_needed(shape: tuple[int, int], *, periodic: bool, precision: Precisio
     return (76.0 if precision == "double" else 67.0) * points + 9.0 * transformed + BLOCKS
 
 
-def _check_memory(shape: tuple[int, ...], periodic: bool, arithmetic: Arithmetic) -> None:
-    need = memory_needed((shape[0], shape[1]), periodic=periodic, precision=arithmetic.precision)
+def _check_memory(shape: tuple[int, int], periodic: bool, arithmetic: Arithmetic) -> None:
+    need = memory_needed(shape, periodic=periodic, precision=arithmetic.precision)
     have = available()
     if have is not None and need > have:
         raise InputError(

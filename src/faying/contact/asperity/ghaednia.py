@@ -35,18 +35,15 @@ class Ghaednia(JacksonGreenBase):
                 f"Ghaednia: tangent_ratio = {self.tangent_ratio}; it must be 0 up to below 1, such as 0.02"
             )
 
-    def curve(self, x: Array) -> AsperityCurve:
-        """Return the model without units at x >= 0."""
-        low, high = np.minimum(x, ELASTIC_END), np.maximum(x, ELASTIC_END)
-        P, A, dP = self._plastic(high, "cosine")
+    def _beyond(self, x: Array) -> AsperityCurve:
+        P, A, dP = self._plastic(x, "cosine")
         s = 1 - exp(-3.3 * self.tangent_ratio)
-        elastic = x <= ELASTIC_END
-        hertz_work = 0.4 * (high**2.5 - ELASTIC_END**2.5)
+        hertz_work = 0.4 * (x**2.5 - ELASTIC_END**2.5)
         return AsperityCurve(
-            P=np.where(elastic, low**1.5, P + s * (high**1.5 - P)),
-            A=np.where(elastic, low, (high**0.5 + (A**0.5 - high**0.5) * self._radius_share(high)) ** 2),
-            dP=np.where(elastic, 1.5 * low**0.5, dP + s * (1.5 * high**0.5 - dP)),
-            W=0.4 * low**2.5 + s * hertz_work + (1 - s) * self._work(high, "cosine"),
+            P=P + s * (x**1.5 - P),
+            A=(x**0.5 + (A**0.5 - x**0.5) * self._radius_share(x)) ** 2,
+            dP=dP + s * (1.5 * x**0.5 - dP),
+            W=s * hertz_work + (1 - s) * self._work(x, "cosine"),
         )
 
     def _radius_share(self, x: Array) -> Array:

@@ -1,5 +1,6 @@
 """Jackson and Green 2005: fits to finite elements with a hardness that falls as the contact grows."""
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from math import exp, pi
 from typing import ClassVar, Literal, final
@@ -37,16 +38,27 @@ class JacksonGreenBase(AsperityModel):
         """End of the Hertz range."""
         return (ELASTIC_END,)
 
-    def _radius(self, x: Array) -> tuple[Array, Array]:
-        """Contact radius over R beyond the elastic range, and its derivative by x."""
-        B = 0.14 * exp(23 * self.yield_strength / self.pair.E_star)
-        ratio = pi * self.CY / (2 * self.pair.E_star) * np.sqrt(x) * (x / ELASTIC_END) ** (B / 2)
-        return ratio, ratio * (1 + B) / (2 * x)
+    @abstractmethod
+    def _beyond(self, x: Array) -> AsperityCurve:
+        """The model at x > 1.9; W counted from there."""
+
+    def curve(self, x: Array) -> AsperityCurve:
+        """Return the model without units at x >= 0."""
+        low, high = np.minimum(x, ELASTIC_END), np.maximum(x, ELASTIC_END)
+        elastic, beyond = x <= ELASTIC_END, self._beyond(high)
+        return AsperityCurve(
+            P=np.where(elastic, low**1.5, beyond.P),
+            A=np.where(elastic, low, beyond.A),
+            dP=np.where(elastic, 1.5 * low**0.5, beyond.dP),
+            W=0.4 * low**2.5 + beyond.W,
+        )
 
     def _plastic(self, x: Array, form: str) -> tuple[Array, Array, Array]:
         """P, A, dP/dx at x > 1.9; form of the hardness: "exponential" (2005) or "cosine" (later)."""
-        ratio, slope = self._radius(x)
         unit = pi * self.CY / (2 * self.pair.E_star)
+        B = 0.14 * exp(23 * self.yield_strength / self.pair.E_star)
+        ratio = unit * np.sqrt(x) * (x / ELASTIC_END) ** (B / 2)  # contact radius over R, and its derivative by x
+        slope = ratio * (1 + B) / (2 * x)
         if form == "exponential":
             e = np.exp(-0.82 * ratio**-0.7)
             HG, dHG = 2.84 * (1 - e), -2.84 * e * 0.82 * 0.7 * ratio**-1.7 * slope
@@ -95,14 +107,5 @@ class JacksonGreen(JacksonGreenBase):
         if self.hardness not in ("exponential", "cosine"):
             raise InputError(f'JG: hardness = {self.hardness!r}; use "exponential" or "cosine"')
 
-    def curve(self, x: Array) -> AsperityCurve:
-        """Return the model without units at x >= 0."""
-        low, high = np.minimum(x, ELASTIC_END), np.maximum(x, ELASTIC_END)
-        P, A, dP = self._plastic(high, self.hardness)
-        elastic = x <= ELASTIC_END
-        return AsperityCurve(
-            P=np.where(elastic, low**1.5, P),
-            A=np.where(elastic, low, A),
-            dP=np.where(elastic, 1.5 * low**0.5, dP),
-            W=0.4 * low**2.5 + self._work(high, self.hardness),
-        )
+    def _beyond(self, x: Array) -> AsperityCurve:
+        return AsperityCurve(*self._plastic(x, self.hardness), self._work(x, self.hardness))

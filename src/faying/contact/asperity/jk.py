@@ -1,6 +1,6 @@
 """The JK asperity of Zhang, Wu, Liu and Jiang 2024: Lin and Lin's law on a cap that rests on a compliant substrate."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from math import inf, sqrt
 from typing import ClassVar, Literal, final
 
@@ -68,16 +68,14 @@ class JK(PowerModel):
     def at(self, delta: ArrayLike) -> AsperityResponse:
         """Return the response at applied interferences [m], any shape; InputError where one is negative."""
         d = checked(delta, name="interference", unit="m", zero=True)
-        own = super().at(d * self.share(d))
-        q, c = self._coupling, self.critical
+        taken = d * self.share(d)
+        own, q, c = super().at(taken), self._coupling, self.critical
         if q == 0:
             return own
-        x = d * self.share(d) / c
+        x, energy = taken / c, own.energy
         unit = 4 / 3 * self.pair.E_star * sqrt(self.R) * c**2.5
-        out = {f.name: getattr(own, f.name) for f in fields(own)}
-        out["stiffness"] = own.stiffness / (1 + 1.5 * q * np.sqrt(x))
         # work on the substrate: integral of P d(q x^1.5), each term of P by 1.5 q x^0.5
         for lower, piece in zip((0.0, *self.borders), self.pieces, strict=True):
             soft = piece._replace(P=tuple((1.5 * q * a, n + 0.5) for a, n in piece.P))
-            out["energy"] = out["energy"] + unit * work(soft, lower, x)
-        return AsperityResponse(**out)
+            energy = energy + unit * work(soft, lower, x)
+        return replace(own, stiffness=own.stiffness / (1 + 1.5 * q * np.sqrt(x)), energy=energy)

@@ -66,12 +66,11 @@ class BearingLaw(ContactLaw):
         plastic_area = a * self._islands.total(1.0, 0.0, border)
         force = coefficient * a**power * self._islands.total(power, border, 1.0) + self.pair.hardness * plastic_area
         area = (self.elastic_share * elastic_area + plastic_area) / self.scan_area
-        flag = np.zeros(a.shape, dtype=bool)
         return Response(
             pressure=np.asarray(force / self.scan_area),
             area=np.asarray(area),
             reasons={
                 "real area above 0.3 of the nominal area": np.asarray(area > 0.3),
-                "D outside 2.1 to 2.9": flag | (not 2.1 <= self.D <= 2.9),
+                "D outside 2.1 to 2.9": np.full(a.shape, not 2.1 <= self.D <= 2.9),
             },
         )

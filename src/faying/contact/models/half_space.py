@@ -120,7 +120,12 @@ class HalfSpace(ContactLaw):
         super().__post_init__()
         flag(self.elastic, "half-space: elastic")
         flag(self.periodic, "half-space: periodic")
-        _check_map(self.scan)
+        heights, spacing = (np.asarray(getattr(self.scan, name, None)) for name in ("heights", "spacing"))
+        if heights.ndim != 2 or spacing.size != 2:
+            raise InputError(
+                f"half-space: scan: {shown(self.scan)}; give an areal scan, as faying.read_scan returns it, levelled "
+                "and filled"
+            )
         object.__setattr__(self, "points", int(self.points))  # the command line reads numbers as floats
         low, high = self.pressure_ends
         if not 0 < low < high < np.inf:
@@ -208,8 +213,7 @@ class HalfSpace(ContactLaw):
         size = self._size
         if size is None:
             return solve(None if self._hardness is None else harder * self._hardness, start)
-        rows, columns = heights.shape
-        return solve_with_size(solve, (rows, columns), spacing, size.times(harder), start)
+        return solve_with_size(solve, heights.shape, spacing, size.times(harder), start)
 
     def _numbers(self, contact: HalfSpaceContact, detail: bool = True) -> dict[str, float]:
         unloading = self.stiffness == "unloading"
@@ -245,9 +249,8 @@ class HalfSpace(ContactLaw):
 
         names = ("elastic", "stiffness", "periodic", "tol")
         key = self._key(names) | {"pressure": float(pressure)}
-        return float(
-            cached_numbers(make, self.cache, "contact", key, np.asarray(self.scan.heights, dtype=float))["k_n"]
-        )
+        heights = np.asarray(self.scan.heights, dtype=float)
+        return float(cached_numbers(make, self.cache, "contact", key, heights)["k_n"])
 
     def _key(self, names: tuple[str, ...]) -> dict[str, object]:
         """What contacts of this scan depend on beyond its heights: entries of these names, spacing, and pair."""
@@ -289,10 +292,8 @@ class HalfSpace(ContactLaw):
         rows |= {"low": series.least_factor(loading=loading), "high": series.greatest_factor(loading=loading)}
         x = np.log(series.pressure)
         closing = PchipInterpolator(x, series.closing)
-        return {name: monotone(x, row) for name, row in rows.items()} | {
-            "closing": closing,
-            "closing_slope": closing.derivative(),
-        }
+        own = {"closing": closing, "closing_slope": closing.derivative()}
+        return own | {name: monotone(x, row) for name, row in rows.items()}
 
     def closing(self, pressure: ArrayLike) -> Array:
         """Return how far the faces have closed [m] at pressures [Pa], any shape, counted from the mean heights.
@@ -402,12 +403,3 @@ class HalfSpace(ContactLaw):
                 "small spots are harder, so that frequencies may be a tenth too high: give brinell of the material"
             )
         return tuple(out)
-
-
-def _check_map(scan: object) -> None:
-    """Raise InputError unless something has heights [m] in rows and columns and spacing (dx, dy) [m]."""
-    heights, spacing = getattr(scan, "heights", None), getattr(scan, "spacing", None)
-    if np.ndim(heights) != 2 or np.size(spacing) != 2:  # type: ignore[arg-type]
-        raise InputError(
-            f"half-space: scan: {shown(scan)}; give an areal scan, as faying.read_scan returns it, levelled and filled"
-        )

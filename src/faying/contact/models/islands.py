@@ -6,6 +6,7 @@ Zhang et al. 2024, doi:10.3390/fractalfract8100611; Mandelbrot's law with the ps
 doi:10.1115/1.2927035).
 """
 
+from collections.abc import Callable
 from functools import cache
 from math import e, exp, log
 
@@ -57,6 +58,17 @@ def domain_extension(D: float) -> float:
         return float(head - tail - 1)
 
     return float(brentq(residual, 1 + 1e-9, e, xtol=1e-15, rtol=8.9e-16))
+
+
+def covering(area: Callable[[Array], Array], scan_area: float) -> float:
+    """Largest truncated area al' [m2] at which the real area [m2], a function of al', is the area of the scan [m2]."""
+    from scipy.optimize import brentq
+
+    def excess(log_al: float) -> float:
+        return float(np.log(area(np.array(np.exp(log_al))) / scan_area))
+
+    middle = log(scan_area)
+    return float(np.exp(brentq(excess, middle - 80, middle + 40, xtol=1e-12)))
 
 
 class Islands:

@@ -27,7 +27,7 @@ Where the print is ambiguous or wrong we read it so:
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import log, pi, sqrt
 from typing import Any, ClassVar, Literal, final
@@ -37,7 +37,7 @@ from numpy.typing import ArrayLike
 
 from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.measured_range import MeasuredRange
-from faying.contact.models.islands import Islands
+from faying.contact.models.islands import Islands, covering
 from faying.contact.parameter import FRACTAL, GAMMA, TEXT, Parameter
 from faying.contact.substrate import (
     MAX_RATIO,
@@ -51,8 +51,8 @@ from faying.contact.substrate import (
 from faying.materials import ContactPair
 from faying.typing import Array
 
-QUANTITIES = ("force", "area", "k_n", "k_t", "energy_n", "energy_t")
 SOFTNESS = {"force": 2, "area": 2, "k_n": 0, "k_t": 0, "energy_n": 4, "energy_t": 4}  # power of the compliance
+QUANTITIES = tuple(SOFTNESS)
 Term = tuple[float, float]  # coefficient and power of y
 
 
@@ -80,31 +80,22 @@ def asperity_regimes(K: float, *, printed: bool) -> tuple[float, tuple[AsperityR
     hard = 3 / K  # 2 pi R d1c H in units of Pc
     carry_1 = 0.0 if printed else 1 / 2.5 - 1 / (n + 1)
     carry_2 = 0.0 if printed else carry_1 + x_p ** (n + 1) / (n + 1) - hard * x_p**2 / 2
-    elastic = AsperityRegime(
-        force=((1.0, 1.5),),  # eq. (12)
-        area=((1.0, 1.0),),  # eq. (13)
-        k_n=((1.5, 0.5),),  # eq. (A4)
-        k_t=((1.0, 0.5),),  # eq. (A11)
-        energy_n=((1 / 2.5, 2.5),),  # eq. (A15)
-        energy_t=((1.0, 2.5),),  # eq. (A22)
-    )
-    mixed = AsperityRegime(
-        force=((1.0, n),),  # eq. (15)
-        area=((1.0, m),),  # eq. (16)
-        k_n=((n, n - 1),),  # eq. (A6)
-        k_t=((1.0, m / 2),),  # eq. (A11)
-        energy_n=((1 / (n + 1), n + 1), (carry_1, 0.0)),  # eq. (A17)
-        energy_t=((1.0, 2 * n - m / 2),),  # eq. (A24)
-    )
-    plastic = AsperityRegime(
-        force=((hard, 1.0),),  # eq. (18)
-        area=((2.0, 1.0),),  # eq. (19)
-        k_n=(),  # eq. (A8)
-        k_t=(),  # eq. (A14)
-        energy_n=((hard / 2, 2.0), (carry_2, 0.0)),  # eq. (A19)
-        energy_t=((hard**2 / sqrt(2), 1.5),),  # eq. (A26)
-    )
-    return x_p, (elastic, mixed, plastic)
+
+    def regime(force: Term, area: Term, carry: float = 0.0) -> AsperityRegime:
+        (c, n), (a, m) = force, area
+        return AsperityRegime(
+            force=(force,),
+            area=(area,),
+            k_n=((c * n, n - 1),),  # slope of the force, eqs. (A4), (A6)
+            k_t=((sqrt(a), m / 2),),  # root of the area, eq. (A11)
+            energy_n=((c / (n + 1), n + 1), *([(carry, 0.0)] if carry else [])),  # eqs. (A15), (A17), (A19)
+            energy_t=((c**2 / sqrt(a), 2 * n - m / 2),),  # force^2 over root of the area, eqs. (A22), (A24), (A26)
+        )
+
+    elastic = regime((1.0, 1.5), (1.0, 1.0))  # eqs. (12), (13)
+    mixed = regime((1.0, n), (1.0, m), carry_1)  # eqs. (15), (16)
+    plastic = regime((hard, 1.0), (2.0, 1.0), carry_2)  # eqs. (18), (19)
+    return x_p, (elastic, mixed, replace(plastic, k_n=(), k_t=()))  # eqs. (A8), (A14)
 
 
 def slip_share(X: ArrayLike) -> Array:
@@ -273,13 +264,7 @@ class JK(ContactLaw):
     @cached_property
     def closure_range(self) -> tuple[float, float]:
         """al' from next to nothing up to where the real area reaches the nominal area [m2]."""
-        from scipy.optimize import brentq
-
-        def excess(log_al: float) -> float:
-            return float(np.log(sum(self._parts(np.array(np.exp(log_al)), ("area",))["area"]) / self.scan_area))
-
-        middle = log(self.scan_area)
-        top = float(np.exp(brentq(excess, middle - 80, middle + 40, xtol=1e-12)))
+        top = covering(lambda al: np.sum(self._parts(al, ("area",))["area"], axis=0), self.scan_area)
         return top * 1e-36, top
 
     def _parts(self, al: Array, wanted: Sequence[str] = QUANTITIES) -> dict[str, list[Array]]:
@@ -288,20 +273,19 @@ class JK(ContactLaw):
         x_p, regimes = self._regimes
         share = 1.0 if isinstance(self.substrate, str) else self.substrate
         scale = SHAPE * share * h_a / d1c  # y = scale * x, or scale * x * lam(x) with the exact substrate
-        if self.closure == "printed":
-            first = d1c / h_a  # a1c'/al', eq. (10)
-            second = x_p * first  # eq. (11)
-        elif self.substrate == "exact":
-            first = substrate_share(d1c / h_a, self.modulus_ratio)
-            second = substrate_share(x_p * d1c / h_a, self.modulus_ratio)
-        elif self.substrate == "computed":
-            first = mixed_place(1 / scale, self._slope(al), self.modulus_ratio)
-            second = mixed_place(x_p / scale, self._slope(al), self.modulus_ratio)
-        else:
-            first, second = 1 / scale, x_p / scale
-        first, second = np.minimum(first, 1.0), np.minimum(second, 1.0)
-        zero, one = np.zeros_like(first), np.ones_like(first)
-        borders = ((zero, first), (first, second), (second, one))
+
+        def border(y: float) -> Array:
+            """The x at which an asperity has this y."""
+            if self.closure == "printed":
+                return y * d1c / h_a  # a1c'/al', a2c'/al', eqs. (10), (11)
+            if self.substrate == "exact":
+                return substrate_share(y * d1c / h_a, self.modulus_ratio)
+            if self.substrate == "computed":
+                return mixed_place(y / scale, self._slope(al), self.modulus_ratio)
+            return y / scale
+
+        first, second = np.minimum(border(1.0), 1.0), np.minimum(border(x_p), 1.0)
+        borders = ((np.zeros_like(first), first), (first, second), (second, np.ones_like(second)))
 
         KH = self.pair.hardness_coefficient * self.pair.hardness
         P_c, A_c, root = 2 / 3 * KH * pi * R * d1c, pi * R * d1c, np.sqrt(R * d1c)
@@ -314,16 +298,15 @@ class JK(ContactLaw):
             "energy_n": P_c * d1c,
             "energy_t": 3 * pi * P_c**2 / (8 * G_star * root),
         }
-        out: dict[str, list[Array]] = {}
-        for quantity in wanted:
-            out[quantity] = []
+        out: dict[str, list[Array]] = {quantity: [] for quantity in wanted}
+        for quantity, sums in out.items():
             for regime, (lower, upper) in zip(regimes, borders, strict=True):
                 if quantity in ("k_n", "k_t") and regime is regimes[0]:
                     lower = self.cutoff * upper
                 part = np.zeros_like(al)
                 for coefficient, power in getattr(regime, quantity):
                     part = part + coefficient * scale**power * self._total(quantity, power, lower, upper, al)
-                out[quantity].append(units[quantity] * part)
+                sums.append(units[quantity] * part)
         return out
 
     def _slope(self, al: Array) -> Array:
@@ -395,7 +378,6 @@ class JK(ContactLaw):
         area, k_n = np.asarray(sum(parts["area"]) / A0), np.asarray(sum(parts["k_n"]) / A0)
         k_t = sum((1 - X) ** (1 / 3) * k for X, k in zip(shear, parts["k_t"], strict=True)) / A0  # eq. (A11)
         al1, al2, al3 = self.limits
-        flag = np.zeros(a.shape, dtype=bool)
         return Response(
             pressure=np.asarray(sum(parts["force"]) / A0),
             area=area,
@@ -409,10 +391,13 @@ class JK(ContactLaw):
                 "real area above 0.3 of the nominal area": area > 0.3,
                 "k_n above the stiffness of the bulk, 1.129 E*/sqrt(A0)": k_n > 2 / sqrt(pi * A0) * self.pair.E_star,
                 "al' above al3'": a > al3,
-                "the limits of the stages are not in the order al1' < al2' < al3'": flag | (not al1 < al2 < al3),
+                "the limits of the stages are not in the order al1' < al2' < al3'": np.full(
+                    a.shape, not al1 < al2 < al3
+                ),
                 **(self._islands.ground(self._slope(a)) if isinstance(self._islands, MixedIslands) else {}),
-                "D outside 2.1 to 2.9": flag | (not 2.1 <= self.D <= 2.9),
-                "tau exceeds friction over the elastic or elastic-plastic asperities, which slip": flag
-                | ((shear[0] >= 1) | (shear[1] >= 1)),
+                "D outside 2.1 to 2.9": np.full(a.shape, not 2.1 <= self.D <= 2.9),
+                "tau exceeds friction over the elastic or elastic-plastic asperities, which slip": np.asarray(
+                    np.maximum(shear[0], shear[1]) >= 1
+                ),
             },
         )

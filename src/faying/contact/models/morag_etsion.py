@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from faying.contact.asperity.lin_lin import LinLin
 from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.measured_range import MeasuredRange
-from faying.contact.models.islands import Islands
+from faying.contact.models.islands import Islands, covering
 from faying.contact.parameter import FRACTAL_MB, Parameter
 from faying.materials import ContactPair
 
@@ -73,14 +73,7 @@ class MoragEtsion(ContactLaw):
     @cached_property
     def closure_range(self) -> tuple[float, float]:
         """al' from next to nothing to where the real area reaches the nominal one [m2]."""
-        from scipy.optimize import brentq
-
-        def excess(log_al: float) -> float:
-            area = self._totals(np.array(np.exp(log_al)))[1]
-            return float(np.log(area / self.scan_area))
-
-        middle = np.log(self.scan_area)
-        top = float(np.exp(brentq(excess, middle - 20, middle + 20, xtol=1e-13)))
+        top = covering(lambda al: self._totals(al)[1], self.scan_area)
         return top * 1e-30, top
 
     def _totals(self, al: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -105,7 +98,6 @@ class MoragEtsion(ContactLaw):
         """Return the response at largest truncated areas al' [m2], any shape; InputError unless positive."""
         a = checked(al, name="al'", unit="m2", zero=False)
         force, area, k_n = (v / self.scan_area for v in self._totals(a))
-        flag = np.zeros(a.shape, dtype=bool)
         return Response(
             pressure=np.asarray(force),
             area=np.asarray(area),
@@ -113,6 +105,6 @@ class MoragEtsion(ContactLaw):
             reasons={
                 "real area above 0.3 of the nominal area": np.asarray(area > 0.3),
                 "the largest contact exceeds its wavelength": np.asarray(a > self.wavelength**2),
-                "D outside 2.1 to 2.9": flag | (not 2.1 <= self.D <= 2.9),
+                "D outside 2.1 to 2.9": np.full(a.shape, not 2.1 <= self.D <= 2.9),
             },
         )
