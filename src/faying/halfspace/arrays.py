@@ -1,10 +1,9 @@
-"""Sums and transforms of large maps by parts that fit into the cache."""
+"""Sums of large maps by parts that fit into the cache, and the precision of a solution."""
 
 from dataclasses import dataclass
 from typing import Any, Literal, final
 
 import numpy as np
-from scipy.fft import fft, ifft, irfft, rfft
 
 from faying.typing import AnyArray, Array
 
@@ -44,7 +43,7 @@ def deviation(a: AnyArray) -> float:
 @final
 @dataclass(frozen=True)
 class Arithmetic:
-    """The precision of a solution, and its transforms.
+    """The precision of a solution.
 
     precision: of pressures and gaps; search directions are in single precision in any case. workers: threads of the
     transforms.
@@ -62,20 +61,6 @@ class Arithmetic:
         """Blocks of rows of a map."""
         step = max(1, PART * (self.workers or 1) // shape[1])
         return [slice(k, min(k + step, shape[0])) for k in range(0, shape[0], step)]
-
-    def along_rows(self, x: AnyArray, length: int) -> AnyArray:
-        """Transform real rows, filled up with zeros to `length`."""
-        return np.asarray(rfft(x, n=length, axis=1, workers=self.workers))
-
-    def back_along_rows(self, spectrum: AnyArray, length: int) -> AnyArray:
-        """Take a transform along rows back."""
-        return np.asarray(irfft(spectrum, n=length, axis=1, workers=self.workers))
-
-    def along_columns(self, spectrum: AnyArray, *, back: bool = False) -> None:
-        """Transform columns in place, or take that back."""
-        done = (ifft if back else fft)(spectrum, axis=0, overwrite_x=True, workers=self.workers)
-        if not np.may_share_memory(done, spectrum):
-            spectrum[...] = done
 
 
 def sums_between(values: AnyArray, offsets: AnyArray) -> Array:

@@ -202,24 +202,27 @@ def minimise(
 
     Raises NotConverged where the residual stays above tol after STEPS steps, or single precision can do no more.
     """
-    return _Search(problem).run(tol, start, least, progress)
+    return _Search(problem, start).run(tol, least, progress)
 
 
 class _Search:
     """g is the gradient plus the datum d, which brings it near 0 where x is between its bounds."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, start: Start | None) -> None:
         self.problem, self.kernel = problem, problem.kernel
         self.real = problem.kernel.arithmetic.real
         self.lower, self.upper = problem.lower, problem.upper
-        self.total, self.scale = problem.mean * problem.load.shape[0], problem.scale
+        n = problem.load.shape[0]
+        self.total, self.scale = problem.mean * n, problem.scale
         self.pace = 1 / self.kernel.own
         self.applications = 0
-        self.x: AnyArray = problem.load
         self.bounded = _is_finite(self.upper)
         self.datum = 0.0
-        self.g: AnyArray = problem.load  # until `run`
         self.doubt = 0.0  # what single precision may have left in g
+        first = np.full(n, self.total / n, dtype=self.real) if start is None else start()
+        self.x = project(first, self.lower, self.upper, self.total)[0]
+        self.g: AnyArray = np.empty(n, dtype=self.real)
+        self.refresh(0.0, precise=False)
 
     def refresh(self, level: float, *, precise: bool) -> None:
         """Make the gradient from x alone."""
@@ -240,12 +243,7 @@ class _Search:
         gap = duality_gap(self.x, self.g, self.lower, self.upper, level)
         return level, max(gap / size, self._imbalance())
 
-    def run(self, tol: float, start: Start | None, least: int, progress: Progress | None) -> Minimum:
-        n = self.problem.load.shape[0]
-        first = np.full(n, self.total / n, dtype=self.real) if start is None else start()
-        self.x = project(first, self.lower, self.upper, self.total)[0]
-        self.g = np.empty(n, dtype=self.real)
-        self.refresh(0.0, precise=False)
+    def run(self, tol: float, least: int, progress: Progress | None) -> Minimum:
         stuck, best, since = False, np.inf, 0
         for step in range(STEPS + 1):
             level, residual = self.measured()

@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
-from typing import final
+from typing import Any, final
 
 import numpy as np
-from scipy.fft import dctn, dstn, next_fast_len
+from scipy.fft import dctn, dstn, fft, ifft, irfft, next_fast_len, rfft
 
 from faying.halfspace.arrays import Arithmetic
 from faying.typing import AnyArray, Array
@@ -93,25 +93,32 @@ class Kernel:
         read(component, i) gives the rows `self.rows[i]`, or None where all of them are 0; write(component, i, block)
         takes those of the outcome. needed[i]: whether anybody wants them.
         """
-        arithmetic, (my, mx), nx = self.arithmetic, self.padded, self.shape[1]
+        workers, (my, mx), nx = self.arithmetic.workers, self.padded, self.shape[1]
         spectra = self._spectra(np.complex128) if table.dtype == np.float64 else self._work
         for k, spectrum in enumerate(spectra):
             for i, rows in enumerate(self.rows):
                 block = read(k, i)
-                spectrum[rows] = 0.0 if block is None else arithmetic.along_rows(block, mx)
+                spectrum[rows] = 0.0 if block is None else rfft(block, n=mx, axis=1, workers=workers)
             spectrum[self.shape[0] :] = 0.0
-            arithmetic.along_columns(spectrum)
+            _along_columns(fft, spectrum, workers)
         upper = my // 2 + 1
         mirrored = table[:, :, 1 : my - upper + 1][:, :, ::-1]
         for here, factors, sign in ((slice(0, upper), table, 1.0), (slice(upper, my), mirrored, -1.0)):
             halves = [spectrum[here] for spectrum in spectra]
-            for rows in arithmetic.rows(halves[0].shape):
+            for rows in self.arithmetic.rows(halves[0].shape):
                 _multiply([half[rows] for half in halves], factors[:, :, rows], sign)
         for k, spectrum in enumerate(spectra):
-            arithmetic.along_columns(spectrum, back=True)
+            _along_columns(ifft, spectrum, workers)
             for i, rows in enumerate(self.rows):
                 if needed is None or needed[i]:
-                    write(k, i, arithmetic.back_along_rows(spectrum[rows], mx)[:, :nx])
+                    write(k, i, irfft(spectrum[rows], n=mx, axis=1, workers=workers)[:, :nx])
+
+
+def _along_columns(transform: Any, spectrum: AnyArray, workers: int | None) -> None:
+    """Transform columns in place."""
+    done = transform(spectrum, axis=0, overwrite_x=True, workers=workers)
+    if not np.may_share_memory(done, spectrum):
+        spectrum[...] = done
 
 
 def _multiply(spectra: list[AnyArray], table: AnyArray, sign: float) -> None:

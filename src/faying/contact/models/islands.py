@@ -23,13 +23,13 @@ def power_integral(exponent: float, lower: ArrayLike, upper: ArrayLike) -> Array
     Accurate through exponent = 0, where it is ln(upper/lower), and for narrow ranges. lower = 0 needs a positive
     exponent (InputError otherwise). Where upper <= lower the range is empty and the integral 0. Shapes broadcast.
     """
+    from scipy.special import exprel
+
     lo, hi = np.broadcast_arrays(np.asarray(lower, float), np.asarray(upper, float))
     full = (hi > lo) & (lo > 0)
-    ratio = np.log(np.where(full, hi, 1.0) / np.where(full, lo, 1.0))
-    step = exponent * ratio
-    relative = np.where(step == 0, 1.0, -np.expm1(-step) / np.where(step == 0, 1.0, step))
-    with np.errstate(divide="ignore"):
-        finite = np.where(full, np.where(full, hi, 1.0) ** exponent * ratio * relative, 0.0)
+    top = np.where(full, hi, 1.0)
+    ratio = np.log(top / np.where(full, lo, 1.0))
+    finite = np.where(full, top**exponent * ratio * exprel(-exponent * ratio), 0.0)
     from_zero = (lo <= 0) & (hi > 0)
     if not np.any(from_zero):
         return finite

@@ -1,7 +1,7 @@
 """A law from any measured or computed curve."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Self, final
@@ -86,11 +86,11 @@ class TabulatedLaw(ContactLaw):
         columns = self._columns
         require(self.name, bool(columns), f"nothing but pressure is given; give any of {', '.join(QUANTITIES)}")
         for name, value in columns.items():
-            checked(value, name=f"{name} of the table", unit=UNITS[name], zero=True)
             require(self.name, value.shape == p.shape, f"{name} has shape {value.shape}, pressure {p.shape}")
-        object.__setattr__(self, "pressure", _frozen(p))
-        for name, value in columns.items():
-            object.__setattr__(self, name, _frozen(value))
+        for name, value in ({"pressure": p} | columns).items():
+            own = np.array(value)
+            own.setflags(write=False)
+            object.__setattr__(self, name, own)
 
     @classmethod
     def from_approach(cls, pressure: ArrayLike, approach: ArrayLike, *, origin: str = "table") -> Self:
@@ -125,11 +125,10 @@ class TabulatedLaw(ContactLaw):
 
     @property
     def _columns(self) -> dict[str, Array]:
-        given = {f.name: getattr(self, f.name) for f in fields(self) if f.name in QUANTITIES}
         return {
             name: checked(value, name=f"{name} of the table", unit=UNITS[name], zero=True)
-            for name, value in given.items()
-            if value is not None
+            for name in QUANTITIES
+            if (value := getattr(self, name, None)) is not None
         }
 
     @property
@@ -158,12 +157,6 @@ class TabulatedLaw(ContactLaw):
         if "area" in values:
             reasons["real area above 0.3 of the nominal area"] = values["area"] > 0.3
         return Response(pressure=p.copy(), reasons=reasons, **values)
-
-
-def _frozen(values: Array) -> Array:
-    out = np.array(values, dtype=float)
-    out.setflags(write=False)
-    return out
 
 
 def _read(path: Path) -> dict[str, Array]:

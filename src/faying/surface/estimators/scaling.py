@@ -36,11 +36,11 @@ def _parts(z: Array, known: Mask) -> list[Part]:
     return out
 
 
-def through_parts(ready: Prepared, c: float, local: Local, low: float, high: float, name: str) -> Estimate:
-    """Run a local estimator on the whole and on its parts."""
+def through_parts(ready: Prepared, c: float, local: Local, sizes: tuple[float, float], name: str) -> Estimate:
+    """Run a local estimator over sizes [m] from the smallest to the largest, on the whole and on its parts."""
     from scipy.stats import t as student
 
-    scan = ready.scan
+    scan, (low, high) = ready.scan, sizes
     steps, z = steps_of(scan), scan.heights
     if high < 3 * low:
         raise NotConverged(f"{scan.source}: sizes {low:.3g} .. {high:.3g} m are too few for {name}; use method psd")
@@ -90,12 +90,6 @@ def mean_law(found: Sequence[tuple[float, float]], low: float, high: float) -> t
     middle = log(1 / (low * high) ** 0.5)
     D = float(np.mean([d for d, _ in found]))
     return D, float(np.mean([v - (7 - 2 * d) * middle for d, v in found])) + (7 - 2 * D) * middle
-
-
-def straight(x: Array, y: Array) -> tuple[float, float]:
-    """Slope and intercept of a straight line through logarithms."""
-    slope, intercept = np.polyfit(x, y, 1)
-    return float(slope), float(intercept)
 
 
 def inside(D: float) -> float:

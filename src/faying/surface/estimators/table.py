@@ -19,7 +19,6 @@ from faying.surface.estimators.scaling import (
     side_of,
     size_band,
     sizes_of,
-    straight,
     through_parts,
 )
 from faying.surface.estimators.spectral import clean_band, of_law, spectral_fit, through_draws
@@ -81,7 +80,7 @@ def in_windows(order: int, integrated: bool) -> Local:
             sizes = sizes_of(low, min(high, lines.shape[1] * step / 2), step)
             x = np.log(np.array(sizes) * step)
             y = np.array([log(float(fluctuation(work, s, order).mean())) for s in sizes])
-            slope, intercept = straight(x, y)
+            slope, intercept = np.polyfit(x, y, 1)
             D = 3 - slope / 2 + (1.0 if integrated else 0.0)
             # F^2 = B w^(6-2D) (w^2) kappa(D)
             level = intercept - log(window_transfer(inside(D), order, integrated)) - cut_log(inside(D), z.ndim == 2)
@@ -118,7 +117,7 @@ def by_structure(ready: Prepared, limits: Limits, c: float) -> Estimate:
         x, y = np.log(sf.lag[use]), np.log(sf.value[use])
         middle = float(x.mean())
         x = x - middle
-        slope, intercept = straight(x, y)
+        slope, intercept = np.polyfit(x, y, 1)
 
         def residual(t: Array) -> Array:
             return np.asarray(np.log(np.maximum(np.exp(t[0] * x) + t[2], 1e-12)) + t[1] - y)
@@ -129,7 +128,7 @@ def by_structure(ready: Prepared, limits: Limits, c: float) -> Estimate:
         k = log(2 * structure_coefficient(inside(D))) + cut_log(inside(D), z.ndim == 2)
         return D, float(found[1]) - (6 - 2 * D) * middle - k
 
-    return through_parts(ready, c, local, *size_band(ready, limits, 3, 1 / 16), "the structure function")
+    return through_parts(ready, c, local, size_band(ready, limits, 3, 1 / 16), "the structure function")
 
 
 def by_roughness_length(ready: Prepared, limits: Limits, c: float) -> Estimate:
@@ -137,7 +136,7 @@ def by_roughness_length(ready: Prepared, limits: Limits, c: float) -> Estimate:
 
     Source: Malinverno 1990, doi:10.1029/GL017i011p01953.
     """
-    return through_parts(ready, c, in_windows(1, False), *size_band(ready, limits, 10, 1 / 4), "the roughness length")
+    return through_parts(ready, c, in_windows(1, False), size_band(ready, limits, 10, 1 / 4), "the roughness length")
 
 
 def by_box(ready: Prepared, limits: Limits, c: float) -> Estimate:
@@ -167,14 +166,13 @@ def by_box(ready: Prepared, limits: Limits, c: float) -> Estimate:
             covered = float(np.prod([len(range(0, n - s + 1, s)) * s / n for n in z.shape]))
             count = np.floor((tops - z.min()) / height) - np.floor((bottoms - z.min()) / height) + 1
             y.append(log(float(count.sum()) / covered))
-        slope, _ = straight(np.log(np.array(sizes) * step), np.array(y))
-        D = -slope + (1 if z.ndim == 1 else 0)
+        D = float(-np.polyfit(np.log(np.array(sizes) * step), y, 1)[0]) + (1 if z.ndim == 1 else 0)
         gap = sizes_of(low, high, step)[len(sizes_of(low, high, step)) // 2]
         square = np.mean([float(np.mean((lines[:, gap:] - lines[:, :-gap]) ** 2)) for lines, _ in rows_of(z, steps)])
         k = log(2 * structure_coefficient(inside(D))) + cut_log(inside(D), z.ndim == 2)
         return D, log(max(float(square), 1e-300)) - (6 - 2 * D) * log(gap * step) - k
 
-    found = through_parts(ready, c, local, *size_band(ready, limits, 2, 1 / 8), "box counting")
+    found = through_parts(ready, c, local, size_band(ready, limits, 2, 1 / 8), "box counting")
     words = "box counting is known to be off by 0.1 and more in D: quote other methods too, or use --self-test"
     return replace(found, notes=(*found.notes, words))
 
@@ -194,13 +192,13 @@ def by_higuchi(ready: Prepared, limits: Limits, c: float) -> Estimate:
                 both = mark[:, k:] * mark[:, :-k]
                 y.append(log(max(float(np.sum(np.abs(lines[:, k:] - lines[:, :-k]) * both) / both.sum()), 1e-300)))
             # the length is N k^-2 sum |step|, so its slope -Ds is that of the mean step less 2
-            slope, intercept = straight(x, np.array(y))
+            slope, intercept = np.polyfit(x, y, 1)
             D = 3 - slope
             level = 2 * intercept + log(pi / 2) - log(2 * structure_coefficient(inside(D)))
             found.append((D, level - cut_log(inside(D), z.ndim == 2)))
         return mean_law(found, low, high)
 
-    return through_parts(ready, c, local, *size_band(ready, limits, 2, 1 / 16), "Higuchi's length")
+    return through_parts(ready, c, local, size_band(ready, limits, 2, 1 / 16), "Higuchi's length")
 
 
 def by_mfdfa(ready: Prepared, limits: Limits, c: float) -> Estimate:
@@ -209,7 +207,7 @@ def by_mfdfa(ready: Prepared, limits: Limits, c: float) -> Estimate:
     Source: Kantelhardt et al. 2002, doi:10.1016/S0378-4371(02)01383-3.
     """
     return through_parts(
-        ready, c, in_windows(2, True), *size_band(ready, limits, 10, 1 / 4), "the detrended fluctuation"
+        ready, c, in_windows(2, True), size_band(ready, limits, 10, 1 / 4), "the detrended fluctuation"
     )
 
 
