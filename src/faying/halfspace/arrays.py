@@ -26,13 +26,6 @@ def dot(a: AnyArray, b: AnyArray) -> float:
     return sum(total(a[s] * b[s]) for s in parts(a))
 
 
-def add_times(out: AnyArray, factor: float, rows: AnyArray) -> None:
-    """Add factor times some rows (c, n) to others of the same shape."""
-    for k in range(out.shape[0]):
-        for s in parts(out[k, :]):
-            out[k, s] += factor * rows[k, s]
-
-
 def deviation(a: AnyArray) -> float:
     """Standard deviation of a flat array, in double precision."""
     mean, size = total(a) / a.shape[0], a.shape[0]

@@ -64,15 +64,6 @@ def _is_finite(bound: Bound) -> bool:
     return not isinstance(bound, (int, float)) or isfinite(bound)
 
 
-def _least(a: AnyArray) -> float:
-    return min(float(np.min(a[s])) for s in parts(a))
-
-
-def _clip(v: AnyArray, lower: Bound, upper: Bound) -> None:
-    for s in parts(v):
-        v[s] = np.clip(v[s], _at(lower, s), _at(upper, s))
-
-
 def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyArray, float]:
     """Nearest point to v between the bounds whose sum is `total`, and the shift that gives it: clip(v + shift).
 
@@ -93,10 +84,10 @@ def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyA
 
     shift, (found, free) = 0.0, look(0.0)
     if abs(total - found) <= near:
-        _clip(v, lower, upper)
+        np.clip(v, lower, upper, out=v)
         return v, 0.0  # a shift of rounding size would lift every cell off its bound
     low = min(float(np.min(_at(lower, s) - v[s])) for s in parts(v))
-    high = total / size - _least(v)
+    high = total / size - float(np.min(v))
     if _is_finite(upper):
         high = max(float(np.max(_at(upper, s) - v[s])) for s in parts(v))
     shift = min(max((total - found) / size, low), high)
@@ -114,7 +105,7 @@ def project(v: AnyArray, lower: Bound, upper: Bound, total: float) -> tuple[AnyA
             break
         shift = trial
     v += shift
-    _clip(v, lower, upper)
+    np.clip(v, lower, upper, out=v)
     return v, shift
 
 
@@ -139,7 +130,7 @@ def best_level(x: AnyArray, gradient: AnyArray, lower: Bound, upper: Bound) -> f
     size = int(x.shape[0])
     if isinstance(upper, (int, float)) and isinstance(lower, (int, float)):
         if not isfinite(upper):
-            return -_least(gradient)
+            return -float(np.min(gradient))
         place = min(int((total(x) - size * lower) / (upper - lower)), size - 1)
         return -float(np.partition(gradient, place)[place])
     free = (x > lower) & (x < upper)
@@ -291,21 +282,18 @@ class _Search:
         pace, level = self.pace, 0.0
         every = Cells(self.kernel, np.ones(self.x.shape[0], dtype=np.bool))
         for _ in range(1 if once else 12):
-            y = np.empty_like(self.x)
-            for s in parts(y):
-                y[s] = self.x[s] - pace * self.g[s]
+            y = -pace * self.g
+            y += self.x
             y, shift = project(y, self.lower, self.upper, self.total)
             level = -shift / pace
-            for s in parts(y):
-                y[s] -= self.x[s]
+            y -= self.x
             # y sums to 0: taking the level out of g changes nothing but the rounding
             g, curvature, doubt = self._added(every, y)
             down = sum(total((self.g[s] + level) * y[s]) for s in parts(y))
             if down + curvature / 2 < 0:
                 self.doubt += doubt
-                for s in parts(y):
-                    y[s] += self.x[s]
-                _clip(y, self.lower, self.upper)
+                y += self.x
+                np.clip(y, self.lower, self.upper, out=y)
                 self.x, self.g = y, g
                 break
             if curvature <= 0:

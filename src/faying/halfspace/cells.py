@@ -51,17 +51,15 @@ class Blocks:
     def __init__(self, cells: Cells) -> None:
         kernel = cells.kernel
         self.shape: tuple[int, int] = (max(1, kernel.shape[0] // BLOCK), max(1, kernel.shape[1] // BLOCK))
-        self.kernel, self.starts = kernel, cells.starts  # not the cells, which hold their blocks
+        self.kernel, self.starts = kernel, cells.starts
         (of_row, edges), (of_column, across) = (_divided(n, m) for n, m in zip(kernel.shape, self.shape, strict=True))
         self._edges = edges
         self._numbers = np.empty(cells.size, dtype=np.int32)
         self._offsets = []  # of each piece: where the cells of each row in each block begin, and the end of the last
-        of_column = of_column.astype(np.int32)
         for i, (rows, piece) in enumerate(zip(kernel.rows, cells.pieces, strict=True)):
             mask = cells.mask[piece]
-            lines = of_row[rows].astype(np.int32)
             if cells.counts[i]:
-                every = lines[:, None] * self.shape[1] + of_column[None, :]
+                every = of_row[rows, None] * self.shape[1] + of_column[None, :]
                 self._numbers[cells.starts[i] : cells.starts[i + 1]] = np.reshape(every, (-1,))[mask]
             counted = np.cumulative_sum(np.astype(mask, np.int64), include_initial=True)
             at = np.arange(rows.stop - rows.start)[:, None] * kernel.shape[1] + across[None, :-1]
@@ -86,5 +84,5 @@ class Blocks:
 
 def _divided(n: int, m: int) -> tuple[Any, Any]:
     """For n cells in m blocks: the block of each cell, and where the blocks begin and end."""
-    of = np.arange(n) * m // n
+    of = (np.arange(n) * m // n).astype(np.int32)
     return of, np.searchsorted(of, np.arange(m + 1))

@@ -18,7 +18,7 @@ from typing import final
 
 import numpy as np
 
-from faying.halfspace.arrays import add_times, dot, total
+from faying.halfspace.arrays import dot, total
 from faying.halfspace.cells import Blocks, Cells
 from faying.halfspace.kernels import Kernel
 from faying.typing import AnyArray, Array
@@ -171,7 +171,7 @@ def constrained_gradients(
         if curvature <= 0:
             break
         along = rz / curvature
-        add_times(s, along, t)
+        s += along * t
         gain = along * rz
         gained += gain
         if gain <= reduction**2 * gained or turn + 1 == limit:

@@ -98,17 +98,15 @@ class CMY(AreaFractionLaw):
         k_n = 1.25 * self.pair.E_star * self.mean_slope / self.h_rms * A**0.95
         Y = sqrt(2) * erfcinv(2 * A)
         flattening = grows * H * np.exp(-(Y**2) / 2) / (sqrt(2 * pi) * self.h_rms)
-        reasons = {
-            "p/H_c outside of 1e-6 to 0.023": self._unfitted(A),
-            "contacts stay elastic: H_c above E* m/sqrt(2)": np.asarray(
-                self.pair.E_star * self.mean_slope / sqrt(2) < H
-            ),
-        }
+        elastic = self.pair.E_star * self.mean_slope / sqrt(2)
         return Response(
             pressure=np.asarray(p),
             area=A.copy(),
             k_n=np.asarray(k_n),
             k_t=np.asarray(k_n * 4 * self.pair.G_star / self.pair.E_star),
             k_load=np.asarray(np.minimum(flattening, k_n)),
-            reasons=reasons,
+            reasons={
+                "p/H_c outside of 1e-6 to 0.023": self._unfitted(A),
+                "contacts stay elastic: H_c above E* m/sqrt(2)": np.asarray(elastic < H),
+            },
         )

@@ -219,8 +219,8 @@ class HalfSpace(ContactLaw):
         unloading = self.stiffness == "unloading"
         work = 0.0 if unloading else contact.plastic_work
         area = contact.area_corrected if self.area == "corrected" else contact.area
-        out = {"area": area, "energy_n": contact.elastic_energy + work}
-        out["k_n"] = contact.normal_stiffness(loading=False)
+        k_n = contact.normal_stiffness(loading=False)
+        out = {"area": area, "energy_n": contact.elastic_energy + work, "k_n": k_n}
         if not detail:
             return out
         tensor = contact.tangential_stiffness()

@@ -173,14 +173,10 @@ def _read(path: Path) -> dict[str, Array]:
         raise ReadError(
             f"{path}: {len(lines)} row{'s' * (len(lines) != 1)} under the head; give 2 or more, rising in pressure"
         )
+    above = "pressures must be above 0, where the faces begin to touch"
     for name, values in found.items():
-        low = values <= 0 if name == "pressure" else values < 0
+        low, least = (values <= 0, above) if name == "pressure" else (values < 0, "it must be 0 or more")
         if np.any(low):
-            least = (
-                "pressures must be above 0, where the faces begin to touch"
-                if name == "pressure"
-                else "it must be 0 or more"
-            )
             row = int(np.argmax(low))
             raise ReadError(f'{path}, line {lines[row]}: {table.given(name, row)} in the column "{name}"; {least}')
     falls = np.diff(found["pressure"]) <= 0

@@ -77,9 +77,7 @@ def size_band(ready: Prepared, limits: Limits, points: float, share: float) -> t
     """
     if limits is not None:
         return limits
-    low = points * max(steps_of(ready.scan))
-    if ready.scan.instrument.resolution:
-        low = max(low, ready.scan.instrument.resolution)
+    low = max(points * max(steps_of(ready.scan)), ready.scan.instrument.resolution or 0.0)
     side = min(sides_of(ready.scan))
     # a scan of a hundred points or so: larger sizes than are good rather than none
     return low, max(share * side, min(3.2 * low, side / 3))
@@ -101,11 +99,8 @@ def rows_of(z: Array, steps: tuple[float, ...]) -> list[tuple[Array, float]]:
     """The profiles along x and along y (at most 256 each, evenly chosen) with their spacing."""
     if z.ndim == 1:
         return [(z[None, :], steps[0])]
-    out = []
-    for lines, step in ((z, steps[1]), (z.T, steps[0])):
-        every = max(1, len(lines) // 256)
-        out.append((np.ascontiguousarray(lines[::every]), step))
-    return out
+    both = (z, steps[1]), (z.T, steps[0])
+    return [(np.ascontiguousarray(lines[:: max(1, len(lines) // 256)]), step) for lines, step in both]
 
 
 def sizes_of(low: float, high: float, step: float, count: int = 12) -> list[int]:
