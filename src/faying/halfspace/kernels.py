@@ -31,19 +31,23 @@ class Kernel:
 
     shape (ny, nx) of the map; padded (my, mx), the size of its transforms: equal to shape for a periodic surface, at
     least twice it less one for a free one. Tables of shape (c, c, my // 2 + 1, mx // 2 + 1), real, hold a quarter of
-    the wave numbers: the diagonal ones are even in q_y, the others odd. symbol, in double precision, and symbol_single;
-    inverse, in single, a positive operator near the inverse, for preconditioning.
-    aspect: dy/dx. strength: symbol times |q|, of long waves.
+    the wave numbers: the diagonal ones are even in q_y, the others odd. symbol, in double precision; inverse, in
+    single, a positive operator near the inverse, for preconditioning. aspect: dy/dx. strength: symbol times |q|, of
+    long waves.
     """
 
     shape: tuple[int, int]
     padded: tuple[int, int]
     aspect: float
     symbol: AnyArray
-    symbol_single: AnyArray
     inverse: AnyArray
     strength: float
     arithmetic: Arithmetic
+
+    @cached_property
+    def symbol_single(self) -> AnyArray:
+        """The symbol in single precision."""
+        return self.symbol.astype(np.float32)
 
     @property
     def components(self) -> int:
@@ -162,7 +166,15 @@ def normal_kernel(shape: tuple[int, int], aspect: float, *, periodic: bool, arit
     else:
         cell = _rectangle(padded, aspect)
         symbol = _even((cell["xx"] + cell["yy"]) / pi)
-    return _assembled(shape, padded, aspect, (symbol[None, None], _inverse(q)[None, None]), 2.0, arithmetic)
+    return Kernel(
+        shape=shape,
+        padded=padded,
+        aspect=aspect,
+        symbol=symbol[None, None],
+        inverse=_inverse(q)[None, None].astype(np.float32),
+        strength=2.0,
+        arithmetic=arithmetic,
+    )
 
 
 def shear_kernel(
@@ -194,30 +206,17 @@ def shear_kernel(
     else:
         parts = _cerruti(padded, aspect, nu, G)
     base = 2 * G * _inverse(q)
-    inverse = {k: base * ((k != "xy") + nu / (1 - nu) * v / q**2) for k, v in along.items()}
-    if not vector:
-        return _assembled(shape, padded, aspect, (parts["xx"][None, None], base[None, None]), 1 / G, arithmetic)
-    full = [np.array([[d["xx"], d["xy"]], [d["xy"], d["yy"]]]) for d in (parts, inverse)]
-    return _assembled(shape, padded, aspect, (full[0], full[1]), 1 / G, arithmetic)
-
-
-def _assembled(
-    shape: tuple[int, int],
-    padded: tuple[int, int],
-    aspect: float,
-    tables: tuple[Array, Array],
-    strength: float,
-    arithmetic: Arithmetic,
-) -> Kernel:
-    symbol, inverse = tables
+    symbol, inverse = parts["xx"][None, None], base[None, None]
+    if vector:
+        near = {k: base * ((k != "xy") + nu / (1 - nu) * v / q**2) for k, v in along.items()}
+        symbol, inverse = (np.array([[d["xx"], d["xy"]], [d["xy"], d["yy"]]]) for d in (parts, near))
     return Kernel(
         shape=shape,
         padded=padded,
         aspect=aspect,
         symbol=symbol,
-        symbol_single=symbol.astype(np.float32),
         inverse=inverse.astype(np.float32),
-        strength=strength,
+        strength=1 / G,
         arithmetic=arithmetic,
     )
 

@@ -132,22 +132,23 @@ class GreenwoodWilliamson(ContactLaw):
 
     def _ratios(self, pressure: Array) -> Mapping[str, Array]:
         """Ratios (n, n) of unloading to first loading at pressures [Pa] after each of them; see `Memory.of`."""
+        names, n = ("area", "k_n", "energy_n"), len(pressure)
+        if isinstance(self._asperity, Hertz):
+            return dict.fromkeys(names, np.ones((n, n)))
         t, weight = self._points
         way = EtsionKligermanKadin(loading=self._asperity, delta_max=t * self.sigma)
         raised = np.concatenate([[0.0], np.geomspace(1e-4, FARTHEST, UNLOADED) * self.sigma])
         values = _values(way.at(np.maximum(t * self.sigma - raised[:, None], 0.0)))  # (separations, summits, 4)
-        closures, n = self._closure_at(pressure), len(pressure)
+        closures = self._closure_at(pressure)
         first = self.at_closure(closures).quantities()
-        out = {name: np.full((n, n), np.nan) for name in ("area", "k_n", "energy_n")}
-        if isinstance(self._asperity, Hertz):
-            return {name: np.ones((n, n)) for name in out}
+        out = {name: np.full((n, n), np.nan) for name in names}
         for after, closure in enumerate(closures):
             heights = weight * np.exp(-((t + closure / self.sigma) ** 2) / 2) / sqrt(2 * pi)
             force, area, k_n, energy = self.density * np.einsum("s,dsq->qd", heights, values)
             lower = slice(max(after - DEEPEST, 0), after + 1)
             x = np.log(pressure[lower])
             shut = (force > 0) & (k_n > 0)
-            for name, row in (("area", area), ("k_n", k_n), ("energy_n", energy)):
+            for name, row in zip(names, (area, k_n, energy), strict=True):
                 found = np.interp(x, np.log(force[shut][::-1]), np.log(row[shut][::-1]))
                 out[name][lower, after] = np.exp(found) / first[name][lower]
         return out

@@ -157,16 +157,11 @@ class MeasuredHeights(ContactLaw):
 
     def _integrals(self, place: Array) -> tuple[Array, Array]:
         """Second [m] and first [-] integral of the probability density up to a place [m], any shape."""
+        from scipy.interpolate import PPoly
+
         g, c = np.asarray(self.gaps) - self._touch, np.asarray(self.probability)
-        h = np.diff(g)
-        first = np.concatenate([[0.0], np.cumsum(h * (c[1:] + c[:-1]) / 2)])
-        second = np.concatenate([[0.0], np.cumsum(h * (first[:-1] + h * (2 * c[:-1] + c[1:]) / 6))])
-        inside = np.clip(place, g[0], g[-1])
-        cell = np.clip(np.searchsorted(g, inside, side="right") - 1, 0, len(h) - 1)
-        x, bend = inside - g[cell], np.diff(c)[cell] / h[cell]
-        one = first[cell] + x * (c[cell] + x * bend / 2)
-        two = second[cell] + x * (first[cell] + x * (c[cell] / 2 + x * bend / 6))
-        return two + np.maximum(place - g[-1], 0.0), one
+        density, inside = PPoly(np.stack([np.diff(c) / np.diff(g), c[:-1]]), g), np.clip(place, g[0], g[-1])
+        return density.antiderivative(2)(inside) + np.maximum(place - g[-1], 0.0), density.antiderivative()(inside)
 
     @cached_property
     def _curves(self) -> tuple[Any, ...]:
