@@ -82,14 +82,14 @@ def asperity_regimes(K: float, *, printed: bool) -> tuple[float, tuple[AsperityR
     carry_2 = 0.0 if printed else carry_1 + x_p ** (n + 1) / (n + 1) - hard * x_p**2 / 2
 
     def regime(force: Term, area: Term, carry: float = 0.0) -> AsperityRegime:
-        (c, n), (a, m) = force, area
+        (c, p), (a, q) = force, area  # c y^p and a y^q
         return AsperityRegime(
             force=(force,),
             area=(area,),
-            k_n=((c * n, n - 1),),  # slope of the force, eqs. (A4), (A6)
-            k_t=((sqrt(a), m / 2),),  # root of the area, eq. (A11)
-            energy_n=((c / (n + 1), n + 1), *([(carry, 0.0)] if carry else [])),  # eqs. (A15), (A17), (A19)
-            energy_t=((c**2 / sqrt(a), 2 * n - m / 2),),  # force^2 over root of the area, eqs. (A22), (A24), (A26)
+            k_n=((c * p, p - 1),),  # slope of the force, eqs. (A4), (A6)
+            k_t=((sqrt(a), q / 2),),  # root of the area, eq. (A11)
+            energy_n=((c / (p + 1), p + 1), *([(carry, 0.0)] if carry else [])),  # eqs. (A15), (A17), (A19)
+            energy_t=((c**2 / sqrt(a), 2 * p - q / 2),),  # force^2 over root of the area, eqs. (A22), (A24), (A26)
         )
 
     elastic = regime((1.0, 1.5), (1.0, 1.0))  # eqs. (12), (13)
