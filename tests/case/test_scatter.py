@@ -167,7 +167,8 @@ def test_a_prediction_draws_waves_where_a_run_draws_them(tmp_path, rise):
 @pytest.mark.parametrize(
     ("lines", "ends"),
     [
-        ("", [1 - 0.14 * SCORE, 1 + 0.14 * SCORE]),
+        ('E = "200 GPa +- 2 GPa"', [1 - 0.14 * SCORE, 1 + 0.14 * SCORE]),
+        ("only = true", [1, 1]),
         ('bolt.factor = "1 +- 0.1"', [1 - 0.1 * SCORE, 1 + 0.1 * SCORE]),
         ('preload = { tightening = "load washer" }', [1 - 0.05 * SCORE, 1 + 0.05 * SCORE]),
         ('bolt.preload = "8 kN +- 0.4 kN"', [1 - 0.05 * SCORE, 1 + 0.05 * SCORE]),
@@ -175,7 +176,7 @@ def test_a_prediction_draws_waves_where_a_run_draws_them(tmp_path, rise):
 )
 def test_a_bolt_scatters_as_the_study_says_else_by_the_default_way(tmp_path, lines, ends):
     (tmp_path / "model.inp").write_text(abaqus(stacked()))
-    (tmp_path / "study.toml").write_text(f"{CURVED}[uncertain]\nonly = true\n{lines}\n")
+    (tmp_path / "study.toml").write_text(f"{CURVED}[uncertain]\n{lines}\n")
     study = Study.read(tmp_path / "study.toml")
     assert force_factors(study, study.bolts[0].name, np.array([0.05, 0.95])) == pytest.approx(ends, abs=1e-4)
 

@@ -136,11 +136,11 @@ class Draws:
 
 def _wavy(case: Case) -> list[_Wavy | None]:
     """Where waves are drawn on each joint; None where it stays as it is."""
-    structure, out = case.structure, list[_Wavy | None]()
+    structure, listed, out = case.structure, stated(case.study.uncertain), list[_Wavy | None]()
     for joint, choice, surface in zip(structure.joints, case.study.joints, case.surfaces, strict=True):
         interface = joint.interface
         found = drawn_on(case.study, structure.mesh, choice, interface, surface)
-        if found is None:
+        if found is None or not (case.study.assumes_scatter or f"joint.{choice.name}.form.waviness_seed" in listed):
             out.append(None)
             continue
         axes, laid = found
@@ -239,8 +239,8 @@ def _ends(case: Case, middle: ChangedCase) -> dict[str, tuple[ChangedCase, Chang
         out["law"] = replace(middle, laws=_laws(case, factor=0)), replace(middle, laws=_laws(case, factor=2))
     if any(low < high for low, _, high in (ratios_of(case, joint) for joint in case.structure.joints)):
         out["k_t/k_n"] = replace(middle, laws=_laws(case, ratio=0)), replace(middle, laws=_laws(case, ratio=2))
-    if len(case.loads) == 1:
-        low, _, high = _preload_factors(case)
+    low, _, high = _preload_factors(case)
+    if len(case.loads) == 1 and low < high:
         out["preload"] = replace(middle, factor=low), replace(middle, factor=high)
     return out
 
@@ -273,6 +273,8 @@ def law_notes(case: Case) -> Iterator[Note]:
     known = stated(case.study.uncertain)
     laws = [joint.law for joint in case.structure.joints]
     for joint, law, factors in zip(case.study.joints, laws, law_factors(case), strict=True):
+        if factors is None and not case.study.assumes_scatter:
+            continue
         if factors is None:
             unknown.setdefault(law.model.name, []).append(joint.name)
             continue
@@ -321,9 +323,9 @@ def _combined(
         middle += 0.0 if isinstance(drawn, NotConverged) else mean
         split = of_group((mean - of_group(mean)) ** 2)  # of twins, by waves that are nowhere alike
         found["waves"] = SCORE * np.sqrt(of_group(logs.var(axis=0, ddof=1)) + split) * ONE_EACH_WAY
-    if all(state.ends and "scan" in state.ends for state in states):
+    if case.study.assumes_scatter and all(state.ends and "scan" in state.ends for state in states):
         found["scan"] = np.log(np.stack([(state.ends or {})["scan"] for state in states], axis=1) / f)
-    if len(states) > 1:
+    if len(states) > 1 and np.ptp(_preload_factors(case)):
         curve = about if isinstance(about, np.ndarray) else f
         found["preload"] = _by_preload(case.loads, curve, _preload_factors(case))
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):

@@ -51,7 +51,7 @@ def half_of(springs: Springs[Interface], which: int) -> Springs[Interface]:
 def quantiles(case: Case, own: str, common: str, table: Distribution | None) -> tuple[float, float, float] | None:
     """5, 50 and 95 % of a number: as the study says of it or of all such numbers, else from a table; None without."""
     known = stated(case.study.uncertain)
-    found = known.get(own) or known.get(common) or table
+    found = known.get(own) or known.get(common) or (table if case.study.assumes_scatter else None)
     if found is None:
         return None
     low, middle, high = found.quantile(LEVELS)
@@ -59,11 +59,9 @@ def quantiles(case: Case, own: str, common: str, table: Distribution | None) -> 
 
 
 def ratios_of(case: Case, joint: FittedJoint) -> tuple[float, float, float]:
-    """5, 50 and 95 % of k_t/k_n of a joint; three times the number that the study gives where that does not scatter."""
+    """5, 50 and 95 % of k_t/k_n of a joint; three times the same where it does not scatter."""
     known, given = stated(case.study.uncertain), joint.law.tangential
     own, common = f"joint.{joint.name}.tangential", "joint.tangential"
     if isinstance(given, int | float) and own not in known and common not in known:
         return float(given), float(given), float(given)
-    found = quantiles(case, own, common, default("k_t/k_n"))
-    assert found is not None
-    return found
+    return quantiles(case, own, common, default("k_t/k_n")) or (1.0, 1.0, 1.0)

@@ -117,7 +117,8 @@ def stated(choice: UncertainChoice | None) -> Mapping[str, Distribution]:
 def force_factors(study: Study, bolt: str, shares: Array) -> Array:
     """Force of a bolt over the one that the study states [-], at shares of probability of any shape.
 
-    What [uncertain] says of the bolt or of all bolts, else the default way of tightening.
+    What [uncertain] says of the bolt or of all bolts, else the default way of tightening, or 1 where only that scatters
+    which is listed.
     """
     known = stated(study.uncertain)
     for owner in (f"bolt.{bolt}", "bolt"):
@@ -125,7 +126,7 @@ def force_factors(study: Study, bolt: str, shares: Array) -> Array:
             return factor.quantile(shares)
         if (force := known.get(f"{owner}.preload")) is not None:  # the study has its median
             return force.quantile(shares) / force.median
-    return default("preload").quantile(shares)
+    return default("preload").quantile(shares) if study.assumes_scatter else np.ones_like(shares)
 
 
 def _parts_sd(choice: UncertainChoice | None) -> float | None:
@@ -166,7 +167,7 @@ def discrepancy(choice: UncertainChoice) -> float:
 def with_assumed(study: Study) -> UncertainChoice:
     """What scatters in a study: what [uncertain] lists, and what is assumed of the rest unless that is left out."""
     given = study.uncertain or UncertainChoice()
-    if given.only:
+    if not study.assumes_scatter:
         return given
     listed = [number_of(one.key) for one in given.inputs]
     more: list[Input] = []

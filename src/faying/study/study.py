@@ -164,6 +164,11 @@ class Study(Summary):
         return any(joint.state == "settled" for joint in self.joints)
 
     @property
+    def assumes_scatter(self) -> bool:
+        """Whether what [uncertain] does not list scatters as it is assumed of bolted structures."""
+        return self.uncertain is None or not self.uncertain.only
+
+    @property
     def in_order(self) -> bool:
         """Whether the bolts are tightened one after another."""
         return any(case.order is not None for case in self.preloads)

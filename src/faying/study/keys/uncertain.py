@@ -54,7 +54,7 @@ class UncertainChoice:
         inputs: The numbers.
         models: Laws and their weights, which sum to 1; empty where the law is certain.
         fit: Whether D and G scatter as the fit of the scan says; scans: others of the same surface.
-        only: Whether nothing else scatters in a prediction; else the rest does as it is assumed.
+        only: Whether nothing else scatters; else the rest does as it is assumed.
         test, discrepancy: Standard deviation of a test frequency over its value, and of the model's own error in a mode
             [-]; None for the defaults of an identification.
         structure: Standard deviation of ln f that all modes share, beyond E and density where these are listed [-].
