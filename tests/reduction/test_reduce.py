@@ -65,7 +65,7 @@ def trained(request):
 def test_frequencies_and_damping_are_those_of_the_full_solution(trained, D, G, F):
     structure, reduction = trained
     found, damped = full(structure, law(D, G), F)
-    variant = reduction.evaluate([law(D, G)], np.array([F]), [None])
+    variant = reduction.model.evaluate([law(D, G)], np.array([F]), [None])
     assert variant.frequencies == pytest.approx(damped.frequencies, rel=1e-5)
     assert variant.loss_factors == pytest.approx(damped.loss_factors, rel=1e-2)
     pressed = found.pressures[0]
@@ -76,7 +76,7 @@ def test_the_estimate_covers_the_error(trained):
     structure, reduction = trained
     for D, G, F in [(2.41, 1e-10, 900.0), (2.55, 4e-10, 200.0)]:
         _, damped = full(structure, law(D, G), F)
-        variant = reduction.evaluate([law(D, G)], np.array([F]), [None])
+        variant = reduction.model.evaluate([law(D, G)], np.array([F]), [None])
         error = np.abs(variant.frequencies / damped.frequencies - 1)
         assert error.max() < variant.estimate.max() + 5e-7  # the share of the force balance
 
@@ -92,7 +92,7 @@ def compressed():
     rng = np.random.default_rng(4)
     for _ in range(96):
         one = [law(rng.uniform(2.3, 2.5), 10 ** rng.uniform(-10.5, -9.5))]
-        reduction.learn(one, reduction.evaluate(one, np.array([rng.uniform(300.0, 3000.0)]), [None]))
+        reduction.learn(one, reduction.model.evaluate(one, np.array([rng.uniform(300.0, 3000.0)]), [None]))
     reduction.compress(LOOSE)
     return reduction, before
 
@@ -141,7 +141,9 @@ def test_enrichment_lowers_the_estimates():
     soft = [(2.3, 3e-10), (2.3, 1e-10), (2.25, 2e-10)]
 
     def estimates():
-        return np.array([reduction.evaluate([law(*one)], np.array([100.0]), [None]).estimate.max() for one in soft])
+        return np.array(
+            [reduction.model.evaluate([law(*one)], np.array([100.0]), [None]).estimate.max() for one in soft]
+        )
 
     before = estimates()
     reduction.train([law(*soft[0])], np.array([100.0]), [None], tolerance=TOLERANCE)
@@ -164,7 +166,7 @@ def test_the_reduced_model_travels(trained):
     _, reduction = trained
     laws, force = [law(2.4, 1e-10)], np.array([800.0])
     there = pickle.loads(pickle.dumps(reduction.model)).evaluate(laws, force, [None])
-    assert there.frequencies == pytest.approx(reduction.evaluate(laws, force, [None]).frequencies, rel=1e-9)
+    assert there.frequencies == pytest.approx(reduction.model.evaluate(laws, force, [None]).frequencies, rel=1e-9)
 
 
 def test_bases_that_were_kept_grow_on_as_if_they_had_not_been(tmp_path):
@@ -175,13 +177,13 @@ def test_bases_that_were_kept_grow_on_as_if_they_had_not_been(tmp_path):
     write_arrays(kept, once.arrays())
     again = Reduction.resumed(structure, load_arrays(kept))
     other = [law(2.5, 3e-10)], np.array([3000.0]), [None]
-    before = once.evaluate(*other)
+    before = once.model.evaluate(*other)
     for one in (once, again):
-        assert one.evaluate(*other).frequencies == pytest.approx(before.frequencies, rel=1e-10)
+        assert one.model.evaluate(*other).frequencies == pytest.approx(before.frequencies, rel=1e-10)
         one.train(*other, tolerance=TOLERANCE)
         one.compress(TOLERANCE)
     assert again.trained == once.trained == 2
-    grown, expected = again.evaluate(*other), once.evaluate(*other)
+    grown, expected = again.model.evaluate(*other), once.model.evaluate(*other)
     assert grown.frequencies == pytest.approx(expected.frequencies, rel=1e-9)
     assert grown.loss_factors == pytest.approx(expected.loss_factors, rel=1e-6)
     assert grown.estimate == pytest.approx(expected.estimate, rel=0.1, abs=1e-9)
@@ -207,7 +209,7 @@ def test_springs_of_one_pressure_carry_the_load(trained):
 
 def test_wrong_number_of_forces(trained):
     with pytest.raises(faying.InputError, match="2 bolt forces for 1 bolts"):
-        trained[1].evaluate([law()], np.array([1.0, 2.0]), [None])
+        trained[1].model.evaluate([law()], np.array([1.0, 2.0]), [None])
 
 
 def test_complex_modes_of_the_small_problem_are_those_of_all_its_vectors(trained):
@@ -245,7 +247,7 @@ def test_a_solid_bolt_in_small_bases():
     found = made.assembly().solve(made.loads @ [3e3])
     K, _ = made.coupled(made.springs(found.pressures))
     modes = lowest_modes(K, made.dynamic_matrices[1], 6 + COUNT, shift_frequency=made.shift_frequency)
-    variant = reduction.evaluate(laws, np.array([3e3]), [None] * len(laws))
+    variant = reduction.model.evaluate(laws, np.array([3e3]), [None] * len(laws))
     assert variant.frequencies == pytest.approx(modes.frequencies[6:], rel=1e-5)
 
 

@@ -1,6 +1,7 @@
 """Stiffness and mass of isotropic solids of any elements, assembled without a loop over elements."""
 
 from collections.abc import Iterator, Mapping
+from math import isqrt
 from typing import Any, Protocol
 
 import numpy as np
@@ -30,9 +31,24 @@ class Solid(Protocol):
         """Density [kg/m3]."""
 
 
+def _lame(E: float, nu: float) -> tuple[float, float]:
+    """Lame's constants lambda and mu [Pa]."""
+    return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+
+
+def stress_of(slope: Array, solid: Solid) -> Array:
+    """Stress (e, q, 3, 3, m) [Pa] of displacement gradients."""
+    lam, mu = _lame(solid.E, solid.nu)
+    out = mu * (slope + slope.transpose(0, 1, 3, 2, 4))
+    trace = lam * (slope[:, :, 0, 0] + slope[:, :, 1, 1] + slope[:, :, 2, 2])
+    for k in range(3):
+        out[:, :, k, k] += trace
+    return np.asarray(out)
+
+
 def stiffness_of(g: Array, weights: Array, E: float, nu: float) -> Array:
     """Stiffness (e, a, 3, a, 3) of gradients in space g (e, q, a, 3) at points of weight (e, q) [m3]."""
-    lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+    lam, mu = _lame(E, nu)
     # directions before nodes, so that what is swapped below are whole rows of nodes
     scaled = (g * np.sqrt(weights)[..., None, None]).transpose(0, 1, 3, 2)
     e, q, _, a = scaled.shape
@@ -61,30 +77,41 @@ def element_mass(points: Array, cells: Index, density: float, rule: str = "exact
     return np.asarray((share @ pairs).reshape(len(cells), values.shape[1], values.shape[1]))
 
 
-def pairs_of(cells: Index) -> tuple[Index, Index]:
-    """Local numbers of every pair of nodes of an element, each pair once."""
-    a, b = np.triu_indices(cells.shape[1])
-    return a, b
-
-
 def pair_keys(blocks: Blocks, nodes: int) -> Index:
     """Row times nodes plus column of every pair of nodes of every element, row <= column."""
     out = []
     for cells in blocks:
-        a, b = pairs_of(cells)
-        first, second = cells[:, a], cells[:, b]
+        first, second = (cells[:, local] for local in np.triu_indices(cells.shape[1]))
         out.append((np.minimum(first, second) * nodes + np.maximum(first, second)).ravel())
     return np.concatenate(out)
 
 
-def distinct(key: Index) -> tuple[Index, Index]:
-    """The distinct keys in order, and where each key stands among them."""
-    order = np.argsort(key, kind="stable")
-    ranked = key[order]
-    new = np.concatenate([[True], ranked[1:] != ranked[:-1]])
-    slot = np.empty(len(key), dtype=np.int64)
-    slot[order] = np.cumsum(new) - 1
-    return ranked[new], slot
+def pair_blocks(cells: Index, stiffness: Array) -> Array:
+    """Blocks (pairs, 9) of element stiffnesses (e, a, 3, a, 3), pair by pair as in `pair_keys`."""
+    a, b = np.triu_indices(cells.shape[1])
+    blocks = stiffness.transpose(0, 1, 3, 2, 4)[:, a, b]
+    swapped = cells[:, a] > cells[:, b]
+    blocks[swapped] = blocks[swapped].transpose(0, 2, 1)
+    return blocks.reshape(-1, 9)
+
+
+def of_pairs(pairs: Index, values: Array, nodes: int) -> Any:
+    """Symmetric sparse matrix of values (p, k^2), blocks (k, k), at the distinct keys of `pair_keys`.
+
+    Each pair is there once, with row <= column; the rest is the transpose. The values are changed in place.
+    """
+    from scipy.sparse import bsr_array, get_index_dtype
+
+    k = isqrt(values.shape[1])
+    short = get_index_dtype(maxval=max(k * nodes, 2 * values.size))  # indices take a third of a matrix
+    rows, columns = pairs // nodes, pairs % nodes
+    values *= np.where(rows == columns, 0.5, 1.0)[:, None]  # those on the diagonal are added to themselves
+    pointer = np.searchsorted(rows, np.arange(nodes + 1)).astype(short)
+    blocks = values.reshape(-1, k, k), columns.astype(short), pointer
+    upper = bsr_array(blocks, shape=(k * nodes, k * nodes)).tocsr()
+    whole = (upper + upper.T).tocsr()
+    whole.sort_indices()
+    return whole
 
 
 def _chunks(mesh: SolidMesh) -> Iterator[tuple[str, Index]]:
@@ -104,32 +131,20 @@ def assemble(mesh: SolidMesh, materials: Mapping[str, Solid], *, mass: str = "ex
     """
     if mass not in ("exact", "stiffness"):
         raise InputError(f"mass = {mass!r} should be exact or stiffness")
-    from scipy.sparse import bsr_array, csr_array, get_index_dtype
-
     n = len(mesh.points)
-    pairs, slot = distinct(pair_keys(mesh.blocks, n))
-    # only pairs with row <= column are summed, those on the diagonal by half; the rest is the transpose
-    stiff, weight = np.zeros((len(pairs), 9)), np.zeros(len(pairs))
+    pairs, slot = np.unique(pair_keys(mesh.blocks, n), return_inverse=True)
+    stiff, weight = np.zeros((len(pairs), 9)), np.zeros((len(pairs), 1))
     first = 0
     for name, cells in _chunks(mesh):
         solid = materials[name]
-        a, b = pairs_of(cells)
-        here = slot[first : first + len(cells) * len(a)]
+        blocks = pair_blocks(cells, element_stiffness(mesh.points, cells, solid.E, solid.nu))
+        here = slot[first : first + len(blocks)]
         first += len(here)
-        block = element_stiffness(mesh.points, cells, solid.E, solid.nu).transpose(0, 1, 3, 2, 4)[:, a, b]
-        swapped = cells[:, a] > cells[:, b]
-        block[swapped] = block[swapped].transpose(0, 2, 1)
-        add_rows(stiff, here, block.reshape(-1, 9))
+        add_rows(stiff, here, blocks)
         heavy = element_mass(mesh.points, cells, solid.density or 0.0, mass)
-        add_rows(weight[:, None], here, heavy[:, a, b].reshape(-1, 1))
-    short = get_index_dtype(maxval=max(3 * n, 18 * len(pairs)))  # indices take a third of a matrix
-    columns, rows = (pairs % n).astype(short), pairs // n
-    half = np.where(rows == columns, 0.5, 1.0)
-    pointer = np.searchsorted(rows, np.arange(n + 1)).astype(short)
-    stiff *= half[:, None]
-    K = bsr_array((stiff.reshape(-1, 3, 3), columns, pointer), shape=(3 * n, 3 * n)).tocsr()
-    M = csr_array((weight * half, columns, pointer), shape=(n, n))
-    return with_transpose(K), _threefold(with_transpose(M))
+        a, b = np.triu_indices(cells.shape[1])
+        add_rows(weight, here, heavy[:, a, b].reshape(-1, 1))
+    return of_pairs(pairs, stiff, n), _threefold(of_pairs(pairs, weight, n))
 
 
 def strain_energy(mesh: SolidMesh, part: str, solid: Solid, motion: Array) -> float:
@@ -147,13 +162,6 @@ def add_rows(total: Array, slot: Index, values: Array) -> None:
     width = total.shape[1]
     places = width * slot[:, None] + np.arange(width)  # of single numbers, which NumPy adds ten times as fast as rows
     np.add.at(total.reshape(-1), places.ravel(), values.ravel())
-
-
-def with_transpose(upper: Any) -> Any:
-    """The symmetric matrix of its upper triangle, which has half of the diagonal."""
-    whole = (upper + upper.T).tocsr()
-    whole.sort_indices()
-    return whole
 
 
 def _threefold(scalar: Any) -> Any:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faying.fe.elasticity import Solid
+from faying.fe.elasticity import Solid, stress_of
 from faying.fe.elements import SOLIDS
 from faying.fe.elements.element import Element, gradients_in_space
 from faying.fe.sides import nodes_of
@@ -111,11 +111,9 @@ def _at_nodes(points: Array, cells: Index, solid: Solid, moved: Array, free: flo
     _, weights, _, gradients = element.stiffness_rule
     g, det = gradients_in_space(points, cells, gradients)
     slope = np.einsum("eqai,eajk->eqijk", g, moved[cells], optimize=True)
-    lam, mu = solid.E * solid.nu / ((1 + solid.nu) * (1 - 2 * solid.nu)), solid.E / (2 * (1 + solid.nu))
-    stress = np.stack([mu * (slope[:, :, i, j] + slope[:, :, j, i]) for i, j in PAIRS], axis=2)
-    volume_strain = slope[:, :, 0, 0] + slope[:, :, 1, 1] + slope[:, :, 2, 2]
-    heat = solid.E / (1 - 2 * solid.nu) * free
-    stress[:, :, :3] += (lam * volume_strain - heat)[:, :, None]
+    tensor = stress_of(slope, solid)
+    stress = np.stack([tensor[:, :, i, j] for i, j in PAIRS], axis=2)
+    stress[:, :, :3] -= solid.E / (1 - 2 * solid.nu) * free
     return np.einsum("aq,eqik->eaik", _recovery(element), stress, optimize=True), det @ weights
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.fe.elasticity import Solid, add_rows, distinct, pair_keys, pairs_of, stiffness_of, with_transpose
+from faying.fe.elasticity import Solid, add_rows, of_pairs, pair_blocks, pair_keys, stiffness_of, stress_of
 from faying.fe.elements import FACES, SOLIDS, Element
 from faying.fe.interface import Interface
 from faying.fe.solids import SolidMesh
@@ -138,9 +138,8 @@ class Surplus:
             solid, at = self.materials[name], _AtPoints.of(self.mesh.points[cells], self.signs[here])
             u = fields[cells]
             slope = np.einsum("eqaj,eaim->eqjim", at.own_slopes, u, optimize=True)
-            force = -np.einsum(
-                "eqsj,eqjim->esim", at.slopes, at.weights[:, :, None, None, None] * _stress(slope, solid), optimize=True
-            )
+            stress = at.weights[:, :, None, None, None] * stress_of(slope, solid)
+            force = -np.einsum("eqsj,eqjim->esim", at.slopes, stress, optimize=True)
             heavy = (solid.density or 0.0) * at.weights
             momentum = np.einsum("eqs,qa,eq->esa", at.values, at.own_values, heavy, optimize=True)
             force += np.einsum("esa,eaim->esim", momentum, u * squares, optimize=True)
@@ -265,16 +264,6 @@ def _higher(element: Element, places: Array) -> tuple[Array, Array]:
     return np.stack(values, axis=1), np.stack(slopes, axis=1)
 
 
-def _stress(slope: Array, solid: Solid) -> Array:
-    """Stress (e, q, 3, 3, m) [Pa] of displacement gradients."""
-    lam, mu = solid.E * solid.nu / ((1 + solid.nu) * (1 - 2 * solid.nu)), solid.E / (2 * (1 + solid.nu))
-    out = mu * (slope + slope.transpose(0, 1, 3, 2, 4))
-    trace = lam * (slope[:, :, 0, 0] + slope[:, :, 1, 1] + slope[:, :, 2, 2])
-    for k in range(3):
-        out[:, :, k, k] += trace
-    return np.asarray(out)
-
-
 def _straight(points: Array, cells: Index) -> Array:
     """Nodes (e, a, 3) [m] of tetrahedra, with those on edges in the middle between their corners."""
     nodes = points[cells]
@@ -286,22 +275,12 @@ def _straight(points: Array, cells: Index) -> Array:
 
 def _assembled(mesh: SolidMesh, materials: Mapping[str, Solid], functions: Index, signs: Array, count: int) -> Any:
     """Stiffness of the functions (3 f, 3 f) [N/m]."""
-    from scipy.sparse import bsr_array
-
-    pairs, slot = distinct(pair_keys((functions,), count))
-    a, b = pairs_of(functions)
-    total = np.zeros((len(pairs), 9))
+    pairs, slot = np.unique(pair_keys((functions,), count), return_inverse=True)
+    slot, total = slot.reshape(len(functions), -1), np.zeros((len(pairs), 9))
     for name, cells, here in _chunks(mesh):
         at, solid = _AtPoints.of(_straight(mesh.points, cells), signs[here]), materials[name]
         # the rule has a point of negative weight, whose root stiffness_of cannot take
         block = stiffness_of(at.slopes, np.maximum(at.weights, 0.0), solid.E, solid.nu)
         block -= stiffness_of(at.slopes, np.maximum(-at.weights, 0.0), solid.E, solid.nu)
-        blocks = block.transpose(0, 1, 3, 2, 4)[:, a, b]
-        swapped = functions[here][:, a] > functions[here][:, b]
-        blocks[swapped] = blocks[swapped].transpose(0, 2, 1)
-        add_rows(total, slot[here.start * len(a) : here.stop * len(a)], blocks.reshape(-1, 9))
-    rows, columns = pairs // count, (pairs % count).astype(np.int32)
-    total *= np.where(rows == columns, 0.5, 1.0)[:, None]
-    pointer = np.searchsorted(rows, np.arange(count + 1)).astype(np.int32)
-    upper = bsr_array((total.reshape(-1, 3, 3), columns, pointer), shape=(3 * count, 3 * count)).tocsr()
-    return with_transpose(upper)
+        add_rows(total, slot[here].ravel(), pair_blocks(functions[here], block))
+    return of_pairs(pairs, total, count)

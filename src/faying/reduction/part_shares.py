@@ -36,10 +36,10 @@ class PartShares:
         stiffness, mass: Of each part, its shares in `Structure.dynamic_matrices` [N/m], [kg].
     """
 
-    parts: tuple[str, ...]
-    supported_stiffness: tuple[Any, ...]
-    stiffness: tuple[Any, ...]
-    mass: tuple[Any, ...]
+    parts: tuple[str, ...] = ()
+    supported_stiffness: tuple[Any, ...] = ()
+    stiffness: tuple[Any, ...] = ()
+    mass: tuple[Any, ...] = ()
 
     @classmethod
     def of(cls, structure: Structure, parts: Sequence[str]) -> Self:
@@ -59,14 +59,12 @@ class PartShares:
                 here[(3 * structure.mesh.part_nodes(part)[:, None] + np.arange(3)).ravel()] = 1.0
                 sieve = diags_array(here)
                 own = [constrain(sieve @ matrix, structure.fixed, 0.0) for matrix in (K, M)]
-            drawn = [
-                bolt.released
-                for bolt in structure.fitted_bolts
-                if isinstance(bolt, FittedSolidBolt) and bolt.bolt.part == part
-            ]
-            supported_stiffness.append(own[0] - constrain(drawn[0], structure.fixed, 0.0) if drawn else own[0])
             stiffness.append(own[0])
             mass.append(own[1])
+            supported_stiffness.append(own[0])
+            for bolt in structure.fitted_bolts:
+                if isinstance(bolt, FittedSolidBolt) and bolt.bolt.part == part:
+                    supported_stiffness[-1] = own[0] - constrain(bolt.released, structure.fixed, 0.0)
         return cls(
             parts=tuple(parts),
             supported_stiffness=tuple(supported_stiffness),

@@ -10,6 +10,7 @@ estimate that every evaluation carries.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -75,7 +76,7 @@ class Reduction:
     """Bases for equilibrium and vibration of one structure, grown from variants; `model` is what evaluates others."""
 
     def __init__(
-        self, structure: Structure, *, factor: Factorisation, reference: Any, shares: PartShares | None = None
+        self, structure: Structure, *, factor: Factorisation, reference: Any, shares: PartShares | None
     ) -> None:
         """Empty bases about a factorised reference.
 
@@ -86,35 +87,24 @@ class Reduction:
 
         self.stiffness, self.mass = structure.dynamic_matrices
         self.stiffness_static = constrain(structure.supported_stiffness, structure.fixed, 0.0)
-        self.interfaces, self.factor, self.reference = (
-            [joint.interface for joint in structure.joints],
-            factor,
-            reference,
-        )
+        self.interfaces, self.factor = [joint.interface for joint in structure.joints], factor
         self.fixed, mass, rigid = structure.fixed, self.mass, structure.rigid
         self.loads = structure.loads.copy()
         self.loads[self.fixed] = 0.0
         if rigid.shape[1]:
             root = cholesky(rigid.T @ (mass @ rigid))
             rigid = solve_triangular(root, rigid.T, trans="T").T
-        motions: dict[str, Any] = {"rigid": rigid, "rigid_momentum": np.asarray(mass @ rigid)}
-        self.shares, more = shares, (() if shares is None else shares.supported_stiffness)
-        self.static = Basis(
+        basis = partial(
+            Basis,
             reference=reference,
-            operators=(self.stiffness_static, *more),
             interfaces=self.interfaces,
-            rows=[self.loads.T],
-            **motions,
+            rigid=rigid,
+            rigid_momentum=np.asarray(mass @ rigid),
         )
-        more = () if shares is None else (*shares.stiffness, *shares.mass)
-        self._pushed = [] if shares is None else [np.asarray(share @ rigid).T for share in shares.mass]
-        self.dynamic = Basis(
-            reference=reference,
-            operators=(self.stiffness, mass, *more),
-            interfaces=self.interfaces,
-            rows=self._pushed,
-            **motions,
-        )
+        self.shares = shares = PartShares() if shares is None else shares
+        self._pushed = [np.asarray(share @ rigid).T for share in shares.mass]
+        self.static = basis(operators=(self.stiffness_static, *shares.supported_stiffness), rows=[self.loads.T])
+        self.dynamic = basis(operators=(self.stiffness, mass, *shares.stiffness, *shares.mass), rows=self._pushed)
         # springs (4, points of all joints) of the reference, with its shift
         self._reference: tuple[Array, float] | None = None
         # modes of the variants trained on, in the basis for vibration as it was then: real and imaginary parts
@@ -205,9 +195,9 @@ class Reduction:
 
     def _reduced_shares(self) -> ReducedShares | None:
         """The shares of the parts in both bases."""
-        if self.shares is None:
-            return None
         count = len(self.shares.parts)
+        if not count:
+            return None
         return ReducedShares(
             supported_stiffness=np.stack(self.static.small[1:]),
             stiffness=np.stack(self.dynamic.small[2 : 2 + count]),
@@ -278,8 +268,7 @@ class Reduction:
     ) -> Array:
         """What an equilibrium leaves of the forces [N] (n,)."""
         u = self.static.vectors @ found.displacement
-        shares = () if self.shares is None else self.shares.supported_stiffness
-        residual = self.loads @ forces - self._scaled(self.stiffness_static, shares, 0, u)
+        residual = self.loads @ forces - self._scaled(self.stiffness_static, self.shares.supported_stiffness, 0, u)
         for interface, law, limit, p, relative in zip(
             self.interfaces, laws, friction, found.pressures, self.static.relative, strict=True
         ):
@@ -327,11 +316,10 @@ class Reduction:
             values, vectors = values.real, vectors.real
         parts = np.concatenate(real_parts(vectors), axis=1) if lossy else vectors
         x = self.dynamic.vectors @ parts  # real, so that the products with the matrices are
-        stiffness, mass = ((), ()) if self.shares is None else (self.shares.stiffness, self.shares.mass)
-        force = self._scaled(self.stiffness, stiffness, 0, x)
+        force = self._scaled(self.stiffness, self.shares.stiffness, 0, x)
         if self.model.scales is not None and self.model.shares is not None:
             x = x + self.dynamic.rigid @ (self.model.shares.motion(self.model.scales) @ parts)
-        moved = self._scaled(self.mass, mass, 1, x)
+        moved = self._scaled(self.mass, self.shares.mass, 1, x)
         if parts.shape[1] > vectors.shape[1]:
             force, moved = (both[:, : len(values)] + 1j * both[:, len(values) :] for both in (force, moved))
         residual = force - moved * values
@@ -502,12 +490,6 @@ class Reduction:
         self.dynamic.turn(rotation)
         self._needed = [rotation.T @ columns]
         self.refresh(max(coarse, self.model.count))
-
-    def evaluate(
-        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
-    ) -> Variant:
-        """Modes under one law per joint and one force per bolt [N] (b,); see `ReducedModel.evaluate`."""
-        return self.model.evaluate(laws, forces, friction, start)
 
 
 # times the tolerance: what the leading part of the basis for vibration may miss, from which errors are estimated

@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
@@ -80,7 +81,7 @@ class Variant:
     shapes: Complex
 
 
-def _complex_modes(real: Array, loss: Array, count: int, slight: float = SLIGHT) -> tuple[Complex, Complex]:
+def _complex_modes(real: Array, loss: Array, count: int, slight: float) -> tuple[Complex, Complex]:
     """Lowest complex eigenvalues (m,) and vectors (d, m) of diag(real) + i loss, in rising order.
 
     The lowest real modes, some more than are wanted, meet each other exactly; those above them join by what the loss
@@ -244,12 +245,9 @@ class ReducedModel:
         """
         load, joints = self.static_loads @ forces, list(zip(self._motions(self.static_relative), laws, strict=True))
         if start is not None:
-            start = np.concatenate([start, np.zeros(len(load) - len(start))])
-            try:
+            with suppress(NotConverged):  # not near enough
                 balance = ReducedEquilibrium(self.matrices[0], joints, friction=friction)
-                return balance.solve(load, start=start, tolerance=BALANCED)
-            except NotConverged:  # not near enough
-                pass
+                return balance.solve(load, start=np.pad(start, (0, len(load) - len(start))), tolerance=BALANCED)
         return ReducedEquilibrium(self.matrices[0], joints, friction=friction).solve(load, tolerance=BALANCED)
 
     def springs(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> list[Springs[ReducedMotion]]:
@@ -279,11 +277,7 @@ class ReducedModel:
         return values, shapes @ inner, estimate
 
     def evaluate(
-        self,
-        laws: Sequence[JointLaw],
-        forces: Array,
-        friction: Sequence[float | None],
-        start: Array | None = None,
+        self, laws: Sequence[JointLaw], forces: Array, friction: Sequence[float | None], start: Array | None = None
     ) -> Variant:
         """Evaluate one variant.
 
