@@ -79,7 +79,7 @@ def test_sides_look_outwards_and_close(kind):
     points, cells = block(kind, (2, 2, 2), SIZE, move=(0.2, 1))
     for one in cells:
         closing, volume = np.zeros(3), 0.0
-        for side, _, _ in all_sides(one[None]):
+        for side in all_sides(one[None]):
             for face in side:
                 centre, normal, area = face_centre(points, (face[None],))
                 closing += area * normal if KINDS[kind].shape.name == "tet" else 0.0

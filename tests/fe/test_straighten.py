@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from faying.fe.elements import SOLIDS
 from faying.fe.solids import least_jacobian
-from faying.fe.straighten import EDGES, folded, straightened
+from faying.fe.straighten import folded, straightened
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], float)
 
@@ -12,7 +13,7 @@ CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], floa
 def two_tetrahedra(shift):
     """Two on a common face; the middle of the edge 0-1 of the first is moved by so much along +z."""
     corners = np.array([[0, 1, 2, 3], [4, 2, 1, 3]])
-    edges = np.sort(corners[:, EDGES].reshape(-1, 2), axis=1)
+    edges = np.sort(corners[:, np.array(SOLIDS[10].edges)].reshape(-1, 2), axis=1)
     pairs, number = np.unique(edges, axis=0, return_inverse=True)
     middles = CORNERS[pairs].mean(axis=1)
     middles[np.flatnonzero((pairs == [0, 1]).all(axis=1))[0]] += [0, 0, shift]

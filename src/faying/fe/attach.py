@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from faying.errors import InputError
+from faying.fe.elasticity import unit_motions
 from faying.fe.sides import Blocks, sampled
 from faying.typing import Array
 
@@ -56,12 +57,7 @@ def mean_motion(points: Array, blocks: Blocks, at: Array, region: Ring | DepthBa
     columns, entries = [], []
     for faces, values, place, _, share in sampled(points, blocks):
         weight = share if region is None else share * region.covers(place)
-        arm = place - at
-        rigid = np.zeros((*weight.shape, 3, 6))  # motion of a place under the six unit motions
-        rigid[..., :3] = np.eye(3)
-        rigid[..., 0, 4], rigid[..., 0, 5] = arm[..., 2], -arm[..., 1]
-        rigid[..., 1, 3], rigid[..., 1, 5] = -arm[..., 2], arm[..., 0]
-        rigid[..., 2, 3], rigid[..., 2, 4] = arm[..., 1], -arm[..., 0]
+        rigid = unit_motions(place - at)
         gram += np.einsum("fq,fqki,fqkj->ij", weight, rigid, rigid)
         spread = np.einsum("fq,qa,fqki->ifak", weight, values, rigid)
         columns.append((3 * faces[:, :, None] + np.arange(3)).reshape(-1))

@@ -15,7 +15,7 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.elements import FACES
-from faying.fe.interface import Interface, join
+from faying.fe.interface import Interface, at_points, join
 from faying.fe.sides import Blocks, face_centre
 from faying.fe.solids import SolidMesh
 from faying.notes import Note
@@ -65,10 +65,6 @@ def _hats(met: Interface, blocks: Blocks, count: int) -> Any:
     """Area of each point times the linear functions of the corners of the first face (q, n) [m2]."""
     from scipy.sparse import csr_array
 
-    q = len(met.weights)
-    values = (met.weights[:, None] * met.first_values).ravel()
-    pointer = np.arange(q + 1) * met.first_nodes.shape[1]
-    at_nodes = csr_array((values, met.first_nodes.ravel(), pointer), shape=(q, count))
     # a linear function is 1/2 at the middles of the edges of its corner
     rows, columns, halves = [corners_of(blocks)], [corners_of(blocks)], [np.ones(len(corners_of(blocks)))]
     seen: list[Index] = []
@@ -86,19 +82,15 @@ def _hats(met: Interface, blocks: Blocks, count: int) -> Any:
         columns += [edges[:, 1], edges[:, 2]]
         halves += [np.full(2 * len(edges), 0.5)]
     spread = csr_array((np.concatenate(halves), (np.concatenate(rows), np.concatenate(columns))), shape=(count, count))
-    return (at_nodes @ spread).tocsr()
+    return (at_points(met.first_nodes, met.weights[:, None] * met.first_values, count) @ spread).tocsr()
 
 
 def _jump(mesh: SolidMesh, met: Interface) -> Any:
     """Displacement of the second face minus that of the first (3q, unknowns), both at the place of the second."""
-    from scipy.sparse import csr_array, kron
+    from scipy.sparse import kron
 
-    q, n = len(met.weights), len(mesh.points)
-
-    def at(nodes: Index, values: Array) -> Any:
-        return csr_array((values.ravel(), nodes.ravel(), np.arange(q + 1) * nodes.shape[1]), shape=(q, n))
-
-    jump = at(met.second_nodes, met.second_values) - at(met.first_nodes, met.first_values)
+    n = len(mesh.points)
+    jump = at_points(met.second_nodes, met.second_values, n) - at_points(met.first_nodes, met.first_values, n)
     whole = kron(jump, np.eye(3)).tocsr()
     if np.abs(met.gap).max() <= NO_GAP * mesh.size:
         return whole

@@ -114,13 +114,16 @@ def of_pairs(pairs: Index, values: Array, nodes: int) -> Any:
     return whole
 
 
-def _chunks(mesh: SolidMesh) -> Iterator[tuple[str, Index]]:
-    """Element blocks part by part, a few elements at a time."""
+def chunks(mesh: SolidMesh, most: int = CHUNK) -> Iterator[tuple[str, Index, slice]]:
+    """Part, elements and their place among all of them, as many at a time as have `most` pairs of nodes."""
+    first = 0
     for name, blocks in mesh.parts.items():
         for cells in blocks:
-            some = max(1, CHUNK // cells.shape[1] ** 2)
-            for begin in range(0, len(cells), some):
-                yield name, cells[begin : begin + some]
+            count = max(1, most // cells.shape[1] ** 2)
+            for begin in range(0, len(cells), count):
+                some = cells[begin : begin + count]
+                yield name, some, slice(first, first + len(some))
+                first += len(some)
 
 
 def assemble(mesh: SolidMesh, materials: Mapping[str, Solid], *, mass: str = "exact") -> tuple[Any, Any]:
@@ -135,7 +138,7 @@ def assemble(mesh: SolidMesh, materials: Mapping[str, Solid], *, mass: str = "ex
     pairs, slot = np.unique(pair_keys(mesh.blocks, n), return_inverse=True)
     stiff, weight = np.zeros((len(pairs), 9)), np.zeros((len(pairs), 1))
     first = 0
-    for name, cells in _chunks(mesh):
+    for name, cells, _ in chunks(mesh):
         solid = materials[name]
         blocks = pair_blocks(cells, element_stiffness(mesh.points, cells, solid.E, solid.nu))
         here = slot[first : first + len(blocks)]
@@ -150,7 +153,7 @@ def assemble(mesh: SolidMesh, materials: Mapping[str, Solid], *, mass: str = "ex
 def strain_energy(mesh: SolidMesh, part: str, solid: Solid, motion: Array) -> float:
     """Twice the strain energy [J] of a part under a displacement [m] (unknowns,)."""
     moves, total = motion.reshape(-1, 3), 0.0
-    for name, cells in _chunks(mesh):
+    for name, cells, _ in chunks(mesh):
         if name == part:
             stiffness = element_stiffness(mesh.points, cells, solid.E, solid.nu)
             total += float(np.einsum("eai,eaibj,ebj->", moves[cells], stiffness, moves[cells]))
@@ -176,12 +179,12 @@ def _threefold(scalar: Any) -> Any:
 
 def rigid_motions(points: Array) -> Array:
     """Six rigid motions about the centre (3n, 6): three translations, three rotations [m per unit]."""
-    x = points - points.mean(axis=0)
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    modes = np.zeros((len(points), 3, 6))
-    for i in range(3):
-        modes[:, i, i] = 1.0
-        axis = np.zeros(3)
-        axis[i] = 1 / size
-        modes[:, :, 3 + i] = np.cross(axis, x)
+    modes = unit_motions(points - points.mean(axis=0))
+    modes[:, :, 3:] *= 1 / np.linalg.norm(np.ptp(points, axis=0))
     return modes.reshape(-1, 6)
+
+
+def unit_motions(arm: Array) -> Array:
+    """Motion (..., 3, 6) of places at arms (..., 3) [m] from a point under translations along and turns about axes."""
+    turned = np.swapaxes(np.cross(np.eye(3), arm[..., None, :]), -1, -2)
+    return np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=-1)

@@ -58,12 +58,17 @@ def draw_shape(ax: Any, points: Array, triangles: Index, shape: Array) -> Any:
 
     The greatest motion is drawn as 6 % of the diagonal of the surface.
     """
+    moved, motion = moved_by(points, shape)
+    return _draw(ax, moved, triangles, shades(motion[triangles].mean(axis=1)))
+
+
+def _draw(ax: Any, points: Array, triangles: Index, colours: Array) -> Any:
+    """Draw a surface (n, 3) [m] with the colour of each triangle, in mm, and look at it."""
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    moved, motion = moved_by(points, shape)
-    colours = shades(motion[triangles].mean(axis=1))
-    ax.add_collection3d(Poly3DCollection(1e3 * moved[triangles], facecolors=colours, edgecolors="none", linewidths=0))
-    return framed_in_space(ax, 1e3 * moved)
+    corners = 1e3 * points[triangles]
+    ax.add_collection3d(Poly3DCollection(corners, facecolors=colours, edgecolors="none", linewidths=0))
+    return framed_in_space(ax, 1e3 * points)
 
 
 def projected_view(points: Array) -> tuple[Array, Array]:
@@ -86,24 +91,15 @@ def draw_flat(ax: Any, points: Array, triangles: Index, colours: Array) -> None:
     from matplotlib.collections import PolyCollection
 
     flat, near = projected_view(points)
-    up, side = np.radians(ELEVATION), np.radians(AZIMUTH)
-    eye = np.array([np.cos(up) * np.cos(side), np.cos(up) * np.sin(side), np.sin(up)])
     faces = normals(points, triangles)
-    front = np.flatnonzero(faces @ eye > 0)
+    front = np.flatnonzero(projected_view(faces)[1] > 0)
     order = front[np.argsort(near[triangles[front]].mean(axis=1))]
     lit = np.array(colours, float)[order]
     lit[:, :3] *= (0.72 + 0.28 * np.clip(faces[order] @ LIGHT, 0, None))[:, None]
     # an edge of its own colour closes the hairlines between neighbours
-    ax.add_collection(
-        PolyCollection(
-            list(flat[triangles[order]]),
-            facecolors=lit,
-            edgecolors=lit,
-            linewidths=0.25,
-            rasterized=True,
-            clip_on=False,
-        )
-    )
+    corners = list(flat[triangles[order]])
+    lines = PolyCollection(corners, facecolors=lit, edgecolors=lit, linewidths=0.25, rasterized=True, clip_on=False)
+    ax.add_collection(lines)
 
 
 def draw_shape_flat(ax: Any, points: Array, triangles: Index, shape: Array, *, frame: Array | None = None) -> Any:
@@ -144,13 +140,11 @@ def draw_faces(
     alpha: of the rest, below 1 where what is behind it should be seen.
     """
     from matplotlib.colors import to_rgb
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     base = np.array([to_rgb(colours.get(int(face), BARE)) for face in face_of_triangle])
     bright = 0.62 + 0.38 * np.clip(normals(points, triangles) @ LIGHT, 0, None)
     shaded = np.column_stack([base * bright[:, None], np.where(np.isin(face_of_triangle, list(colours)), 1.0, alpha)])
-    ax.add_collection3d(Poly3DCollection(points[triangles] * 1e3, facecolors=shaded, edgecolors="none", linewidths=0))
-    return framed_in_space(ax, points * 1e3)
+    return _draw(ax, points, triangles, shaded)
 
 
 def key_of(ax: Any, colours: Mapping[str, str]) -> None:

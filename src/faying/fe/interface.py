@@ -83,19 +83,24 @@ class Interface(Motion):
     @cached_property
     def relative(self) -> Any:
         """Sparse operator (3q, unknowns) from displacements to opening and slips [m per m]."""
+        first, second = (self.first_nodes, self.first_values), (self.second_nodes, self.second_values)
+        matrix = self.motion_of(first, second, self.unknowns)
+        matrix.eliminate_zeros()
+        return matrix
+
+    def motion_of(self, first: tuple[Index, Array], second: tuple[Index, Array], unknowns: int) -> Any:
+        """Sparse operator (3q, unknowns) to opening and slips from functions of both faces: numbers, values (q, a)."""
         from scipy.sparse import csr_array, get_index_dtype
 
         q = len(self.weights)
-        nodes = np.concatenate([self.first_nodes, self.second_nodes], axis=1)
-        values = np.concatenate([-self.first_values, self.second_values], axis=1)
-        entries = values[:, None, :, None] * self.frames[:, :, None, :]  # q, axis, node, component
-        columns = np.broadcast_to((3 * nodes)[:, None, :, None] + np.arange(3), entries.shape)
-        pointer = np.arange(3 * q + 1) * (3 * nodes.shape[1])
-        short = get_index_dtype(maxval=max(self.unknowns, int(pointer[-1])))  # as those of the parts
+        numbers = np.concatenate([first[0], second[0]], axis=1)
+        values = np.concatenate([-first[1], second[1]], axis=1)
+        entries = values[:, None, :, None] * self.frames[:, :, None, :]  # q, axis, function, component
+        columns = np.broadcast_to((3 * numbers)[:, None, :, None] + np.arange(3), entries.shape)
+        pointer = np.arange(3 * q + 1) * (3 * numbers.shape[1])
+        short = get_index_dtype(maxval=max(unknowns, int(pointer[-1])))  # as those of the parts
         indices = columns.astype(short).ravel(), pointer.astype(short)
-        matrix = csr_array((entries.ravel(), *indices), shape=(3 * q, self.unknowns))
-        matrix.eliminate_zeros()
-        return matrix
+        return csr_array((entries.ravel(), *indices), shape=(3 * q, unknowns))
 
     def opening(self, displacement: Array) -> Array:
         """Opening along the normal [m] (q,), the gap before the load included; negative where the faces approach."""
@@ -112,19 +117,12 @@ class Interface(Motion):
         positive (the consistent share of a corner of a quadratic triangle is zero). Raises InputError where the faces
         do not match node for node.
         """
-        from scipy.sparse import csr_array
         from scipy.sparse.linalg import spsolve
 
         nodes, first = np.unique(self.first_nodes, return_inverse=True)
         others, second = np.unique(self.second_nodes, return_inverse=True)
-        row = np.arange(len(self.weights) + 1)
-
-        def sampled(column: Index, values: Array, count: int) -> Any:
-            pointer = row * values.shape[1]
-            return csr_array((values.ravel(), column.ravel(), pointer), shape=(len(self.weights), count))
-
-        one = sampled(first, self.first_values, len(nodes))
-        two = sampled(second, self.second_values, len(others))
+        one = at_points(first, self.first_values, len(nodes))
+        two = at_points(second, self.second_values, len(others))
         weighted = one * self.weights[:, None]
         gram, cross = (weighted.T @ one).tocsc(), (weighted.T @ two).tocoo()
         diagonal = gram.diagonal()
@@ -159,6 +157,14 @@ class Interface(Motion):
         np.add.at(total, index, share * values[:, None])
         np.add.at(weight, index, share)
         return np.asarray(total / weight)
+
+
+def at_points(nodes: Index, values: Array, count: int) -> Any:
+    """Sparse operator (q, count) from nodes to points, by the shape functions `values` (q, a) of their `nodes`."""
+    from scipy.sparse import csr_array
+
+    q, a = values.shape
+    return csr_array((values.ravel(), nodes.ravel(), a * np.arange(q + 1)), shape=(q, count))
 
 
 def join(mesh: SolidMesh, first: str, second: str, *, search_distance: float | None = None) -> Interface:

@@ -52,7 +52,9 @@ def outline(mesh: SolidMesh, first: Sequence[str] = ()) -> Outline:
         triangles=triangles,
         part_of_triangle=part_of_triangle,
         faces=faces,
-        face_of_triangle=_per_triangle(outer, [_named(mesh, sides, faces) for sides in outer]),
+        face_of_triangle=np.concatenate(
+            [np.tile(_named(mesh, sides, faces), FACES[sides.shape[1]].corners - 2) for sides in outer]
+        ),
     )
 
 
@@ -70,13 +72,6 @@ def _named(mesh: SolidMesh, sides: Index, faces: Sequence[str]) -> Index:
     return found
 
 
-def _per_triangle(outer: Sequence[Index], values: Sequence[Index]) -> Index:
-    """Values of element faces on their triangles, in the order of `triangles_of`."""
-    return np.concatenate(
-        [one for sides, one in zip(outer, values, strict=True) for _ in range(FACES[sides.shape[1]].corners - 2)]
-    )
-
-
 def regions(points: Array, triangles: Index, apart: Index, *, angle: float = 0.7) -> Index:
     """Number smooth regions of a surface (t,), from 0: neighbours whose normals differ by less than an angle [rad].
 
@@ -85,9 +80,8 @@ def regions(points: Array, triangles: Index, apart: Index, *, angle: float = 0.7
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
 
-    pairs = neighbours(triangles)
     normal = normals(points, triangles)
-    one, two = pairs
+    one, two = neighbours(triangles)
     alike = (apart[one] == apart[two]) & (np.einsum("ij,ij->i", normal[one], normal[two]) > np.cos(angle))
     count = len(triangles)
     graph = csr_array((np.ones(int(alike.sum())), (one[alike], two[alike])), shape=(count, count))

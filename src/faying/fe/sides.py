@@ -11,15 +11,11 @@ from faying.typing import Array, Index
 Blocks = tuple[Index, ...]
 
 
-def all_sides(cells: Index) -> list[tuple[Index, Index, Index]]:
-    """Sides of a block of elements as (nodes (f, a), element of each (f,), number of the side (f,)), kind by kind."""
+def all_sides(cells: Index) -> Blocks:
+    """Nodes (f, a) of the sides of a block of elements, kind by kind."""
     sides = SOLIDS[cells.shape[1]].sides
-    out = []
-    for count in sorted({len(side) for side in sides}):
-        numbers = [i for i, side in enumerate(sides) if len(side) == count]
-        nodes = cells[:, [sides[i] for i in numbers]].reshape(-1, count)
-        out.append((nodes, np.repeat(np.arange(len(cells)), len(numbers)), np.tile(numbers, len(cells))))
-    return out
+    counts = sorted({len(side) for side in sides})
+    return tuple(cells[:, [side for side in sides if len(side) == count]].reshape(-1, count) for count in counts)
 
 
 def side_key(faces: Index, nodes: int) -> Index:
@@ -28,18 +24,12 @@ def side_key(faces: Index, nodes: int) -> Index:
     return np.asarray((corners[:, 0] * nodes + corners[:, 1]) * nodes + corners[:, 2])
 
 
-def _by_kind(faces: Sequence[Index]) -> Blocks:
-    """Put faces of one kind together."""
-    counts = sorted({face.shape[1] for face in faces})
-    blocks = (np.concatenate([face for face in faces if face.shape[1] == count]) for count in counts)
-    return tuple(block for block in blocks if len(block))
-
-
 def skin(blocks: Blocks, nodes: int) -> Blocks:
     """Sides that belong to one element only, normals outwards, kind by kind."""
-    found = _by_kind([side for block in blocks for side, _, _ in all_sides(block)])
+    sides = [side for block in blocks for side in all_sides(block)]
     outer = []
-    for faces in found:
+    for kind in sorted({side.shape[1] for side in sides}):
+        faces = np.concatenate([side for side in sides if side.shape[1] == kind])
         _, first, count = np.unique(side_key(faces, nodes), return_index=True, return_counts=True)
         outer.append(faces[np.sort(first[count == 1])])
     return tuple(faces for faces in outer if len(faces))

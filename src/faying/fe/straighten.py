@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from faying.fe.elements import SOLIDS
 from faying.fe.solids import least_jacobian
 from faying.typing import Array, Index, Mask
 
 MIN_JACOBIAN = 0.01  # least determinant at the points of stiffness and mass over that of the straight element
-EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])  # corners whose middles are nodes 4 to 9
 
 
 def folded(points: Array, cells: Index) -> Mask:
@@ -35,5 +35,5 @@ def straightened(points: Array, cells: Index) -> tuple[Array, int, Mask]:
         if not np.any(fresh):
             return points, int(touched.sum()), wrong
         touched |= fresh
-        corners = cells[fresh][:, EDGES]
-        points[cells[fresh][:, 4:]] = points[corners].mean(axis=2)
+        ends = cells[fresh][:, np.array(SOLIDS[10].edges)]
+        points[cells[fresh][:, 4:]] = points[ends].mean(axis=2)

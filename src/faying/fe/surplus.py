@@ -7,20 +7,20 @@ Functions on the faces of a joint feel its springs. Those on faces where bolts, 
 the forces there are not of the parts.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from faying.fe.elasticity import Solid, add_rows, of_pairs, pair_blocks, pair_keys, stiffness_of, stress_of
+from faying.fe.elasticity import Solid, add_rows, chunks, of_pairs, pair_blocks, pair_keys, stiffness_of, stress_of
 from faying.fe.elements import FACES, SOLIDS, Element
 from faying.fe.interface import Interface
 from faying.fe.solids import SolidMesh
 from faying.numerics.product import product
 from faying.typing import Array, Index, Mask
 
-CHUNK = 2000  # elements at a time, which bounds the memory
+CHUNK = 200_000  # pairs of nodes at a time, which bounds the memory
 DEGREE = 4  # of the rule: exact for products of two gradients of the cubic functions
 STEPS = 6  # of conjugate gradients: further ones change the energy by less than a hundredth on ordinary elements
 TINY = 1e-300  # in place of 0 in a divisor
@@ -78,19 +78,10 @@ class Surplus:
 
     def motion(self, interface: Interface) -> Any:
         """Operator (3q, 3f) from the functions to opening and slips [m per m] at the points where two faces meet."""
-        from scipy.sparse import csr_array
-
-        q, count = len(interface.weights), len(self.left_out) // 3
-        total = csr_array((3 * q, 3 * count))
-        for nodes, values, sign in (
-            (interface.first_nodes, interface.first_values, -1.0),
-            (interface.second_nodes, interface.second_values, 1.0),
-        ):
-            functions, at = self._on_face(nodes, values)
-            entries = sign * at[:, None, :, None] * interface.frames[:, :, None, :]  # q, axis, function, component
-            columns = np.broadcast_to((3 * functions)[:, None, :, None] + np.arange(3), entries.shape)
-            pointer = np.arange(3 * q + 1) * (3 * functions.shape[1])
-            total = total + csr_array((entries.ravel(), columns.ravel(), pointer), shape=total.shape)
+        first = self._on_face(interface.first_nodes, interface.first_values)
+        second = self._on_face(interface.second_nodes, interface.second_values)
+        total = interface.motion_of(first, second, len(self.left_out))
+        total.sum_duplicates()
         return total
 
     def _on_face(self, nodes: Index, shapes: Array) -> tuple[Index, Array]:
@@ -134,7 +125,7 @@ class Surplus:
         fields = shapes.reshape(len(self.mesh.points), 3, -1)
         m = fields.shape[2]
         out = np.zeros((len(self.left_out) // 3, 3 * m))
-        for name, cells, here in _chunks(self.mesh):
+        for name, cells, here in chunks(self.mesh, CHUNK):
             solid, at = self.materials[name], _AtPoints.of(self.mesh.points[cells], self.signs[here])
             u = fields[cells]
             slope = np.einsum("eqaj,eaim->eqjim", at.own_slopes, u, optimize=True)
@@ -197,17 +188,6 @@ class _AtPoints:
             slopes=np.einsum("qsj,eqji->eqsi", slopes, inverse, optimize=True) * signs[:, None, :, None],
             weights=np.linalg.det(jacobian) * weights,
         )
-
-
-def _chunks(mesh: SolidMesh) -> Iterator[tuple[str, Index, slice]]:
-    """Part, elements and their place among all of them, a few at a time."""
-    first = 0
-    for name, blocks in mesh.parts.items():
-        for cells in blocks:
-            for begin in range(0, len(cells), CHUNK):
-                some = cells[begin : begin + CHUNK]
-                yield name, some, slice(first, first + len(some))
-                first += len(some)
 
 
 def _keys(corners: Index, n: int) -> Index:
@@ -277,7 +257,7 @@ def _assembled(mesh: SolidMesh, materials: Mapping[str, Solid], functions: Index
     """Stiffness of the functions (3 f, 3 f) [N/m]."""
     pairs, slot = np.unique(pair_keys((functions,), count), return_inverse=True)
     slot, total = slot.reshape(len(functions), -1), np.zeros((len(pairs), 9))
-    for name, cells, here in _chunks(mesh):
+    for name, cells, here in chunks(mesh, CHUNK):
         at, solid = _AtPoints.of(_straight(mesh.points, cells), signs[here]), materials[name]
         # the rule has a point of negative weight, whose root stiffness_of cannot take
         block = stiffness_of(at.slopes, np.maximum(at.weights, 0.0), solid.E, solid.nu)
