@@ -361,7 +361,7 @@ def _curves(
     ]
     vectors = store.basis()
     if vectors is not None:
-        bases[0].restore(vectors)
+        bases[0].basis.append(vectors)
     else:
         bases[0].begin(lambda text: progress.stage(text, 0.5))
         for other in bases[1:]:

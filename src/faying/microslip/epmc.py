@@ -15,6 +15,7 @@ Source:
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -208,13 +209,11 @@ class Epmc:
 
     def _led_in(self, low: float) -> EpmcPoint:
         """The first point, or one decades below where the linear limit is too far from it."""
-        for decades in range(LEAD_IN + 1):
-            try:
-                return self.solve(low / 10**decades / self.level_of(1.0))
-            except NotConverged:
-                if decades == LEAD_IN:
-                    raise
-        raise AssertionError
+        amplitude = low / self.level_of(1.0)
+        for decades in range(LEAD_IN):
+            with suppress(NotConverged):
+                return self.solve(amplitude / 10**decades)
+        return self.solve(amplitude / 10**LEAD_IN)
 
     def _ended(self, last: EpmcPoint, high: float) -> tuple[str, str] | None:
         if last.level >= high * (1 - END_TOLERANCE):
@@ -313,23 +312,21 @@ class Epmc:
         Y, (rate, zeta) = z[:-2].reshape(-1, size), z[-2:]
         frequency = float(rate) * self.linear_frequency
         others = np.delete(Y[1:], self.mode, axis=1)
-        harmonics = Y[3:, self.mode]
-        row = self._row
-        level = amplitude if row is None else amplitude * frequency**2 * float(np.hypot(*(Y[1:3] @ row)))
-        joints = self.model.joints
+        level = amplitude if self._row is None else amplitude * frequency**2 * float(np.hypot(*(Y[1:3] @ self._row)))
+        joints, cycles = self.model.joints, forces.cycles
         return EpmcPoint(
             amplitude=float(amplitude),
             frequency=frequency,
             damping=float(zeta),
             coordinates=amplitude * Y @ self._shapes.T,
             level=float(level),
-            other_modes=float(np.sqrt((others**2).sum() + (harmonics**2).sum())),
-            slipping=share([cycle.slipping for cycle in forces.cycles], joints),
-            open=share([np.asarray(cycle.open, dtype=float) for cycle in forces.cycles], joints),
-            sliding=tuple(np.asarray(cycle.slipping, dtype=float) for cycle in forces.cycles),
-            opening=tuple(np.asarray(cycle.open, dtype=float) for cycle in forces.cycles),
-            dissipated=tuple(np.asarray(cycle.dissipated, dtype=float) for cycle in forces.cycles),
-            traction=tuple(cycle.traction for cycle in forces.cycles),
+            other_modes=float(np.sqrt((others**2).sum() + (Y[3:, self.mode] ** 2).sum())),
+            slipping=share([cycle.slipping for cycle in cycles], joints),
+            open=share([cycle.open for cycle in cycles], joints),
+            sliding=tuple(cycle.slipping for cycle in cycles),
+            opening=tuple(cycle.open.astype(float) for cycle in cycles),
+            dissipated=tuple(cycle.dissipated for cycle in cycles),
+            traction=tuple(cycle.traction for cycle in cycles),
         )
 
 

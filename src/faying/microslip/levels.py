@@ -209,9 +209,12 @@ class LevelModel:
             newton_steps=BALANCE_STEPS,
         )
         amplitude = float(np.linalg.norm(last.motion[1]))
-        speed = 2 * np.pi * last.frequency
         return epmc, EpmcPoint(
-            amplitude=amplitude, frequency=speed, damping=last.damping, coordinates=last.motion, level=amplitude
+            amplitude=amplitude,
+            frequency=2 * np.pi * last.frequency,
+            damping=last.damping,
+            coordinates=last.motion,
+            level=amplitude,
         )
 
     def _towards(
@@ -226,11 +229,14 @@ class LevelModel:
             share: of the change [-], to begin with.
 
         Returns:
-            The secants, and what `_under` has of them; None where no share that counts leaves the mode a frequency.
+            The secants, circular frequencies and shapes under them, and the number of the mode that is most like
+            `rest`; None where no share that counts leaves the mode a frequency.
         """
         while share >= MIN_SHARE:
             secants = [(1 - share) * old + share * new for old, new in zip(last, wanted, strict=True)]
-            softened, like = self._under(secants, rest)
+            changed = sum(j.projected(c) for j, c in zip(self.slip.joints, secants, strict=True))
+            softened = self.slip.modes_under(self.slip.linear + changed)
+            like = int(np.argmax(np.abs(softened[1].T @ self.slip.mass @ rest)))
             if softened[0][like] ** 2 > least:
                 return secants, softened, like
             share *= HALF
@@ -293,18 +299,6 @@ class LevelModel:
                     change[moves, axis, axis] = k - rest[moves, axis, axis]
             out.append(change)
         return out
-
-    def _under(self, changes: Sequence[Array], rest: Array) -> tuple[tuple[Array, Array], int]:
-        """Circular frequencies and shapes under changed springs, and the number of the mode that is most like `rest`.
-
-        changes: `_secants`.
-        """
-        from scipy.linalg import eigh
-
-        change = sum(j.projected(c) for j, c in zip(self.slip.joints, changes, strict=True))
-        squared, shapes = eigh(self.slip.linear + change, self.slip.mass)
-        like = np.abs(shapes.T @ self.slip.mass @ rest)
-        return (np.sqrt(np.maximum(squared, 0.0)), shapes), int(np.argmax(like))
 
 
 def _diagonals(secants: Sequence[Array]) -> Array:

@@ -199,13 +199,9 @@ def _springs(
     column `here` carry p with stiffness k_n.
     """
     pressure, k = curve.pressure(nodes)
-    k = np.concatenate(
-        [
-            np.minimum.accumulate(k[:, here::-1], axis=1)[:, ::-1],
-            np.maximum.accumulate(k[:, here:], axis=1)[:, 1:],
-        ],
-        axis=1,
-    )
+    below = np.minimum.accumulate(k[:, here::-1], axis=1)[:, ::-1]
+    above = np.maximum.accumulate(k[:, here:], axis=1)[:, 1:]
+    k = np.concatenate([below, above], axis=1)
     rise = np.diff(k, axis=1)
     ahead = nodes - nodes[:, [here]]
     # the centroid of the rise of k in a cell, from the integral of ahead dk by parts

@@ -1,7 +1,7 @@
 """Sliders on springs, their motion in time, and their march round a cycle with its derivative."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -106,26 +106,24 @@ class MarchingSliders:
             stretch=_both(lambda _: np.empty((len(motion.to_time), len(owner)))),
         )
 
-    def only(self, kept: Index) -> "MarchingSliders":
+    def only(self, kept: Index) -> Self:
         """Some of the sliders, at the last instant of the cycle."""
 
-        def part(pair: tuple[Array, Array]) -> tuple[Array, Array]:
-            last = _both(lambda _: np.empty((len(pair[0]), len(kept))))
-            for old, new in zip(pair, last, strict=True):
-                new[-1] = old[-1, kept]
-            return last
+        def last(direction: int) -> Array:
+            old = self.stretch[direction]
+            new = np.empty((len(old), len(kept)))
+            new[-1] = old[-1, kept]
+            return new
 
         points, many = np.unique(self.owner[kept], return_counts=True)
-        return MarchingSliders(
-            owner=self.owner[kept],
-            which=self.which[kept],
-            onset=self.onset[kept],
-            k=self.k[kept],
-            reach=self.reach[kept],
+        some = {name: getattr(self, name)[kept] for name in ("owner", "which", "onset", "k", "reach")}
+        return replace(
+            self,
+            **some,
             points=points,
             many=many,
-            begin=(self.begin[0][kept], self.begin[1][kept]),
-            stretch=part(self.stretch),
+            begin=_both(lambda i: self.begin[i][kept]),
+            stretch=_both(last),
         )
 
     def turn(self, motion: CycleMotion, *, first: bool, memory: "Anchors | None") -> Mask:
@@ -204,8 +202,8 @@ class Anchors:
     def listening(self, kept: Index, sliders: MarchingSliders, local: Index, first: Index) -> "Anchors":
         """Some of the sliders, of which the derivative of the forces that a point's anchors hold together is kept."""
         samples, count = self.to_time.shape
-        found = Anchors(
-            to_time=self.to_time,
+        found = replace(
+            self,
             k=sliders.k,
             reach=sliders.reach,
             local=local,

@@ -69,15 +69,11 @@ class SlipBasis:
                 )
         self.stiffness, self.mass = structure.dynamic_matrices
         self.joined, _ = structure.coupled(self.springs)
-        self.basis = self._empty()
-
-    def _empty(self) -> Basis:
-        reference = (self.joined + self.modes.shift * self.mass).tocsr()
-        free = self.modes.shapes[:, : self.structure.rigid_count]
-        return Basis(
-            reference=reference,
+        free = self.modes.shapes[:, :rigid]
+        self.basis = Basis(
+            reference=(self.joined + self.modes.shift * self.mass).tocsr(),
             operators=(self.stiffness, self.mass),
-            interfaces=[joint.interface for joint in self.structure.joints],
+            interfaces=[joint.interface for joint in structure.joints],
             rigid=free,
             rigid_momentum=np.asarray(self.mass @ free),
         )
@@ -86,11 +82,6 @@ class SlipBasis:
     def shape(self) -> Array:
         """Mode at rest (unknowns,) [kg^-1/2]."""
         return np.asarray(self.modes.shapes[:, self.structure.rigid_count + self.mode - 1])
-
-    @property
-    def linear_frequency(self) -> float:
-        """Frequency at rest [Hz]."""
-        return float(self.modes.frequencies[self.structure.rigid_count + self.mode - 1])
 
     def begin(self, report: Callable[[str], None] | None = None) -> None:
         """Take the modes at rest and those with softened joints."""
@@ -111,10 +102,6 @@ class SlipBasis:
                 continue  # too soft for these modes to go by; the residual tells whether that matters
             found = shapes
             self.basis.add(shapes, least=SMALL * float(self._energy(self.shape)))
-
-    def restore(self, vectors: Array) -> None:
-        """Take vectors (unknowns, m) that were the basis of the same structure before, as they are."""
-        self.basis.append(vectors)
 
     def under(
         self, structure: BoltedStructure, preload: PreloadState, springs: Sequence[Springs[Interface]]
@@ -179,13 +166,9 @@ class SlipBasis:
             speed=point.frequency,
             damping=point.damping,
         )
-        correction = self._answer(left)
+        correction = self.modes.factorisation.solve(np.asfortranarray(left))
         size = float(np.einsum("ij,jk,ik->", X, epmc.model.linear, X))
         return float(np.sqrt(max(np.einsum("ij,ij->", left, correction), 0.0) / size)), correction
-
-    def _answer(self, right: Array) -> Array:
-        """The factorisation that the modes have left, on right-hand sides (unknowns, k)."""
-        return self.modes.factorisation.solve(np.asfortranarray(right))
 
     def train(
         self,
@@ -207,13 +190,11 @@ class SlipBasis:
         known: list[EpmcPoint] = []
         first = self.epmc(laws, harmonics=harmonics, samples=samples, observer=observer)
         for amplitude in amplitudes(first):
-            error = np.inf
-            here: EpmcPoint | None = None
+            start = known[-2:]
             for turn in range(ENRICHMENTS + 1):
                 epmc = self.epmc(laws, harmonics=harmonics, samples=samples, observer=observer)
-                grown = [self._padded(point) for point in ([here] if here else known[-2:])]
                 try:
-                    here = epmc.solve(amplitude, grown)
+                    here = epmc.solve(amplitude, [self._padded(point) for point in start])
                 except NotConverged:
                     return worst
                 error, correction = self.residual(epmc, here)
@@ -224,10 +205,10 @@ class SlipBasis:
                 size = float(self._energy(self.basis.vectors @ here.coordinates[1:3].T).sum())
                 if not self.basis.add(correction, least=(0.1 * tolerance) ** 2 * size):
                     break
+                start = [here]
             worst = max(worst, error)
-            if here is not None and (here.slipping > ALL_SLIDING or here.other_modes > OTHER_MODES):
+            if here.slipping > ALL_SLIDING or here.other_modes > OTHER_MODES:
                 break
-            assert here is not None
             known.append(here)
         return worst
 
@@ -235,10 +216,6 @@ class SlipBasis:
         """A point found with fewer vectors."""
         more = self.basis.vectors.shape[1] - point.coordinates.shape[1]
         return replace(point, coordinates=np.pad(point.coordinates, ((0, 0), (0, more))))
-
-    def rows(self, columns: Array) -> Array:
-        """What functionals (unknowns, k) give of the coordinates (k, m)."""
-        return np.asarray(columns.T @ self.basis.vectors)
 
 
 def unbalanced_forces(

@@ -13,7 +13,7 @@ import numpy as np
 from faying.fe.interface import Motion
 from faying.microslip.hysteresis import Cycle
 from faying.microslip.microslip import Microslip
-from faying.typing import Array
+from faying.typing import Array, Mask
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,9 +127,13 @@ class SlipModel:
     @cached_property
     def modes(self) -> tuple[Array, Array]:
         """Angular frequencies [rad/s] (m,) at rest, rising, and mass-normalised shapes (m, m)."""
+        return self.modes_under(self.linear)
+
+    def modes_under(self, stiffness: Array) -> tuple[Array, Array]:
+        """The same under another stiffness (m, m) [N/m] of parts and joints."""
         from scipy.linalg import eigh
 
-        squared, shapes = eigh(self.linear, self.mass)
+        squared, shapes = eigh(stiffness, self.mass)
         return np.sqrt(np.maximum(squared, 0.0)), shapes
 
     def turned(self, shapes: Array) -> Self:
@@ -150,11 +154,9 @@ class SlipModel:
         """Forces of a cycle given by the Fourier coefficients of the coordinates (1 + 2H, m): mean, cos, sin, ..."""
         count, size = coordinates.shape
         force = coordinates @ self.stiffness
-        jacobian = None
-        if derivative:
-            jacobian = np.zeros((count, size, count, size))
-            for k in range(count):
-                jacobian[k, :, k, :] = self.stiffness
+        jacobian = np.zeros((count, size, count, size)) if derivative else None
+        if jacobian is not None:
+            jacobian[np.arange(count), :, np.arange(count)] = self.stiffness
         cycles = []
         for joint in self.joints:
             cycle = joint.cycle(coordinates, derivative=derivative, samples=samples)
@@ -162,8 +164,7 @@ class SlipModel:
             traction[0] -= joint.at_rest[0]
             traction *= joint.weights[:, None]
             force = force + traction.reshape(count, -1) @ joint.relative
-            if jacobian is not None:
-                assert cycle.derivative is not None
+            if jacobian is not None and cycle.derivative is not None:
                 _add_projected(jacobian, joint, cycle.derivative)
             cycles.append(cycle)
         full = None if jacobian is None else jacobian.reshape(count * size, count * size)
@@ -183,7 +184,7 @@ def _add_projected(jacobian: Array, joint: SlipJoint, derivative: Array) -> None
             jacobian[row, :, column, :] += joint.relative.T @ by[:, row].reshape(3 * q, size)
 
 
-def share(values: Sequence[Array], joints: Sequence[SlipJoint]) -> float:
+def share(values: Sequence[Array | Mask], joints: Sequence[SlipJoint]) -> float:
     """Mean over the area of all joints of values (q,) at their points."""
     area = sum(float(joint.weights.sum()) for joint in joints)
     return sum(float(joint.weights @ value) for value, joint in zip(values, joints, strict=True)) / area
