@@ -15,8 +15,8 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.elements import FACES
-from faying.fe.interface import Interface, at_points, join
-from faying.fe.sides import Blocks, face_centre
+from faying.fe.interface import Interface, join
+from faying.fe.sides import Blocks, at_points, edge_ends, face_centre
 from faying.fe.solids import SolidMesh
 from faying.notes import Note
 from faying.typing import Array, Index, Mask
@@ -63,25 +63,8 @@ def corners_of(blocks: Blocks) -> Index:
 
 def _hats(met: Interface, blocks: Blocks, count: int) -> Any:
     """Area of each point times the linear functions of the corners of the first face (q, n) [m2]."""
-    from scipy.sparse import csr_array
-
     # a linear function is 1/2 at the middles of the edges of its corner
-    rows, columns, halves = [corners_of(blocks)], [corners_of(blocks)], [np.ones(len(corners_of(blocks)))]
-    seen: list[Index] = []
-    for block in blocks:
-        kind = FACES[block.shape[1]]
-        if kind.order == 1:
-            continue
-        ends = block[:, np.array(kind.edges)].reshape(-1, 2)
-        seen.append(np.column_stack([block[:, kind.corners :].ravel(), ends]))
-    if seen:
-        edges = np.unique(np.concatenate(seen), axis=0)
-        _, once = np.unique(edges[:, 0], return_index=True)  # the edge of two elements, in either direction
-        edges = edges[once]
-        rows += [edges[:, 0], edges[:, 0]]
-        columns += [edges[:, 1], edges[:, 2]]
-        halves += [np.full(2 * len(edges), 0.5)]
-    spread = csr_array((np.concatenate(halves), (np.concatenate(rows), np.concatenate(columns))), shape=(count, count))
+    spread = at_points(edge_ends(blocks, FACES, count), np.full((count, 2), 0.5), count)
     return (at_points(met.first_nodes, met.weights[:, None] * met.first_values, count) @ spread).tocsr()
 
 

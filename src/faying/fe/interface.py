@@ -9,7 +9,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.elements import FACES
 from faying.fe.overlap import overlap
-from faying.fe.sides import Blocks, padded, surface_frame
+from faying.fe.sides import Blocks, at_points, padded, sampled
 from faying.fe.solids import SolidMesh
 from faying.typing import Array, Index
 
@@ -159,14 +159,6 @@ class Interface(Motion):
         return np.asarray(total / weight)
 
 
-def at_points(nodes: Index, values: Array, count: int) -> Any:
-    """Sparse operator (q, count) from nodes to points, by the shape functions `values` (q, a) of their `nodes`."""
-    from scipy.sparse import csr_array
-
-    q, a = values.shape
-    return csr_array((values.ravel(), nodes.ravel(), a * np.arange(q + 1)), shape=(q, count))
-
-
 def join(mesh: SolidMesh, first: str, second: str, *, search_distance: float | None = None) -> Interface:
     """Pair two faces: where their meshes match, point by point; else over every overlap of two element faces.
 
@@ -196,32 +188,26 @@ def join(mesh: SolidMesh, first: str, second: str, *, search_distance: float | N
 
 def _matched(mesh: SolidMesh, faces_a: Blocks, faces_b: Blocks, search_distance: float) -> Interface | None:
     """Quadrature points of the first face projected on the second; None where the meshes do not match."""
-    places, shares, directions, sampled = [], [], [], []
-    for faces in faces_a:
-        _, weights, values, gradients = FACES[faces.shape[1]].face_rule
-        normals, area = surface_frame(mesh.points, faces, gradients)
-        places.append(np.einsum("fai,qa->fqi", mesh.points[faces], values).reshape(-1, 3))
-        shares.append((area * weights).ravel())
-        directions.append(normals.reshape(-1, 3))
-        sampled.append((np.repeat(faces, len(weights), axis=0), np.tile(values, (len(faces), 1))))
-    positions, normals = np.concatenate(places), np.concatenate(directions)
-    first_nodes, first_values = padded(sampled)
+    samples = sampled(mesh.points, faces_a)
+    positions = np.concatenate([place.reshape(-1, 3) for _, _, place, _, _ in samples])
+    normals = np.concatenate([normal.reshape(-1, 3) for *_, normal, _ in samples])
+    weights = np.concatenate([share.ravel() for *_, share in samples])
+    first_nodes, first_values = padded(
+        [(np.repeat(faces, len(values), axis=0), np.tile(values, (len(faces), 1))) for faces, values, *_ in samples]
+    )
     second_nodes, second_values, distance, hit = _project(mesh.points, faces_b, positions, normals, search_distance)
     if not np.any(hit) or first_values.shape[1] != second_values.shape[1]:
         return None
     # shape functions of both sides agree point by point, up to their order
     if not np.allclose(np.sort(first_values[hit], axis=1), np.sort(second_values[hit], axis=1), atol=1e-6):
         return None
-    counts = np.repeat(
-        [len(FACES[f.shape[1]].face_rule[1]) for f in faces_a],
-        [len(f) for f in faces_a],
-    )
+    counts = np.concatenate([np.full(len(faces), len(values)) for faces, values, *_ in samples])
     share = np.add.reduceat(hit, np.concatenate([[0], np.cumsum(counts)[:-1]])) / counts
     if not np.all((share == 0) | (share == 1)):  # an edge of the second face runs through an element face of the first
         return None
     return Interface(
         positions=positions[hit],
-        weights=np.concatenate(shares)[hit],
+        weights=weights[hit],
         normals=normals[hit],
         gap=distance[hit],
         first_nodes=first_nodes[hit],

@@ -1,11 +1,11 @@
 """Sides of solid elements: which lie on the outside, which of them make up a face; centres and normals."""
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from faying.fe.elements import FACES, SOLIDS
+from faying.fe.elements import FACES, SOLIDS, Element
 from faying.typing import Array, Index
 
 Blocks = tuple[Index, ...]
@@ -62,6 +62,24 @@ def padded(blocks: Sequence[tuple[Index, Array]]) -> tuple[Index, Array]:
     nodes = [np.concatenate([n, np.repeat(n[:, :1], width - n.shape[1], axis=1)], axis=1) for n, _ in blocks]
     values = [np.pad(v, ((0, 0), (0, width - v.shape[1]))) for _, v in blocks]
     return np.concatenate(nodes), np.concatenate(values)
+
+
+def at_points(nodes: Index, values: Array, count: int) -> Any:
+    """Sparse operator (q, count) from nodes to points, by the shape functions `values` (q, a) of their `nodes`."""
+    from scipy.sparse import csr_array
+
+    q, a = values.shape
+    return csr_array((values.ravel(), nodes.ravel(), a * np.arange(q + 1)), shape=(q, count))
+
+
+def edge_ends(blocks: Blocks, kinds: Mapping[int, Element], count: int) -> Index:
+    """Nodes (n, 2) between which each lies half-way: the ends of the edge that it is on, or a corner twice."""
+    ends = np.repeat(np.arange(count)[:, None], 2, axis=1)
+    for block in blocks:
+        kind = kinds[block.shape[1]]
+        if kind.order == 2:
+            ends[block[:, kind.corners :]] = block[:, np.array(kind.edges)]
+    return ends
 
 
 class NamedFaces(Protocol):

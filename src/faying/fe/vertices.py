@@ -6,6 +6,7 @@ from typing import Any, final
 import numpy as np
 
 from faying.fe.elements import SOLIDS
+from faying.fe.sides import at_points, edge_ends
 from faying.fe.solids import SolidMesh
 from faying.typing import Index
 
@@ -26,21 +27,14 @@ class VertexRestriction:
     @classmethod
     def of(cls, mesh: SolidMesh) -> "VertexRestriction | None":
         """The corners of a mesh; None where every node is one."""
-        from scipy.sparse import csr_array, kron
+        from scipy.sparse import kron
 
-        n = len(mesh.points)
-        ends = np.repeat(np.arange(n)[:, None], 2, axis=1)  # of the edge in whose middle a node lies; a corner is both
-        for cells in mesh.blocks:
-            kind = SOLIDS[cells.shape[1]]
-            if kind.order == 2:
-                ends[cells[:, kind.corners :]] = cells[:, np.array(kind.edges)]
+        ends = edge_ends(mesh.blocks, SOLIDS, len(mesh.points))
         corner = ends[:, 0] == ends[:, 1]
         if corner.all():
             return None
         number = np.cumsum(corner) - 1
-        halves = csr_array(
-            (np.full(2 * n, 0.5), number[ends].ravel(), np.arange(0, 2 * n + 1, 2)), shape=(n, int(corner.sum()))
-        )
+        halves = at_points(number[ends], np.full(ends.shape, 0.5), int(corner.sum()))
         halves.sum_duplicates()
         unknowns = 3 * np.flatnonzero(corner)[:, None] + np.arange(3)
         return cls(unknowns=unknowns.ravel(), spread=kron(halves, np.eye(3), format="csr"))

@@ -52,15 +52,18 @@ class GapMap(Summary):
         return _summary("GapMap", self.places, "gaps", self.gaps)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "places", numbers(self.places, "places", "points", 2))
-        object.__setattr__(self, "gaps", numbers(self.gaps, "gaps", len(self.places)))
-        good = np.isfinite(self.gaps) & np.isfinite(self.places).all(axis=1)
-        if np.count_nonzero(good) < 4:
-            raise InputError(f"the map has {np.count_nonzero(good)} points with numbers; a map needs four or more")
-        spread = np.linalg.svd(self.places[good] - self.places[good].mean(axis=0), compute_uv=False)
+        places = numbers(self.places, "places", "points", 2)
+        gaps = numbers(self.gaps, "gaps", len(places))
+        good = np.isfinite(gaps) & np.isfinite(places).all(axis=1)
+        places, gaps = places[good], gaps[good]
+        if len(gaps) < 4:
+            raise InputError(f"the map has {len(gaps)} points with numbers; a map needs four or more")
+        spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
         if spread[1] < 1e-9 * spread[0]:
             raise InputError("the points of the map are on one line; a map covers an area, with x and y both varying")
-        places, gaps = _means(self.places[good], self.gaps[good])
+        once, where, counts = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+        if len(once) < len(places):
+            places, gaps = once, np.bincount(where.ravel(), gaps) / counts
         object.__setattr__(self, "places", places)
         object.__setattr__(self, "gaps", gaps)
 
@@ -81,12 +84,6 @@ class GapMap(Summary):
             )
         inside = LinearNDInterpolator(self.places, self.gaps)(local)
         return np.asarray(np.where(np.isfinite(inside), inside, NearestNDInterpolator(self.places, self.gaps)(local)))
-
-
-def _means(places: Array, values: Array) -> tuple[Array, Array]:
-    """Each place once, with the mean of its values; as they are where none is there twice."""
-    found, where, counts = np.unique(places, axis=0, return_inverse=True, return_counts=True)
-    return (places, values) if len(found) == len(places) else (found, np.bincount(where.ravel(), values) / counts)
 
 
 def _box(low: Array, high: Array) -> str:

@@ -115,14 +115,12 @@ class Waviness:
             raise InputError("waviness is a gap over a flat face, and this one is curved; give a measured map")
         shortest, longest = self._ends(axes)
         self._check_room(shortest, longest)
-        known = None if self.scan is None else self.scan.hurst
-        hurst = self.hurst or (known if self.Wq is None else None) or HURST
-        Wq = self.Wq
+        Wq, hurst = self.Wq, self.hurst or HURST
         if Wq is None:
             if self.scan is None:
                 raise InputError('waviness from = "scan" needs [surface] scan; give Wq, Wa or process')
-            scan = self.scan if self.hurst is None else replace(self.scan, hurst=self.hurst)
-            Wq = scan.Wq(shortest, longest)
+            scan = replace(self.scan, hurst=self.hurst or self.scan.hurst)
+            Wq, hurst = scan.Wq(shortest, longest), scan.hurst or HURST
         return Waves(Wq=Wq, hurst=hurst, shortest=shortest, longest=longest, seed=self.seed)
 
 
