@@ -98,7 +98,7 @@ def frequencies_of(
 
 
 def _at_loads(reduction: Reduction, loads: Sequence[Gapped], start: Array) -> list[Variant]:
-    return [reduction.evaluate_at(one, start) for one in loads]
+    return [reduction.at(one).evaluate(one.laws, one.forces, one.friction, start) for one in loads]
 
 
 def _trained(reduction: Reduction, every: Sequence[Sequence[Gapped]]) -> list[Array | NotConverged]:

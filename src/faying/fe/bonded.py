@@ -1,10 +1,8 @@
 """Faces that are welded or glued: the nodes of both become one where they match, else the faces are tied.
 
-Faces that are welded or glued and whose meshes do not match: tied by means of their jump, as mortar elements do.
-
-The jump of the displacements is weighted with the linear functions of the corners of one face, those of the finer one.
-Each mean is held by a spring that is far stiffer than the parts. Fewer conditions than nodes leave quadratic faces free
-to fit each other, where a condition at every point would lock them.
+Ties hold means of the jump of the displacements, as mortar elements do, weighted with the linear functions of the
+corners of the finer face. Each mean is held by a spring that is far stiffer than the parts. Fewer conditions than nodes
+leave quadratic faces free to fit each other, where a condition at every point would lock them.
 """
 
 from collections.abc import Sequence
@@ -16,10 +14,10 @@ import numpy as np
 from faying.errors import InputError
 from faying.fe.elements import FACES
 from faying.fe.interface import Interface, join
-from faying.fe.sides import Blocks, at_points, edge_ends, face_centre
+from faying.fe.sides import Blocks, at_points, edge_ends, sampled
 from faying.fe.solids import SolidMesh
 from faying.notes import Note
-from faying.typing import Array, Index, Mask
+from faying.typing import Array, Index
 from faying.units import show_area
 
 STIFF = 1e5  # times E over the size of the mesh: the stiffness per area of a tie [Pa/m]
@@ -180,13 +178,8 @@ def matched(mesh: SolidMesh, faces: tuple[str, str], area: float, close: float) 
     near = distance <= close
     on_both = np.zeros(len(mesh.points), dtype=bool)
     on_both[a[index[near]]] = True
-    if abs(_area(mesh.points, mesh.face(faces[0]), on_both) - area) > SHARE * area:
+    inside = tuple(block[on_both[block].all(axis=1)] for block in mesh.face(faces[0]))
+    matching = sum(float(share.sum()) for *_, share in sampled(mesh.points, inside))
+    if abs(matching - area) > SHARE * area:
         return None
     return np.stack([a[index[near]], b[near]])
-
-
-def _area(points: Array, blocks: Blocks, nodes: Mask) -> float:
-    """Area [m2] of those elements of a face whose nodes are all among some."""
-    inside = tuple(block[np.all(nodes[block], axis=1)] for block in blocks)
-    inside = tuple(block for block in inside if len(block))
-    return face_centre(points, inside)[2] if inside else 0.0

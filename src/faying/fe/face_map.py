@@ -86,8 +86,6 @@ def projection(points: Array, triangles: Index, places: Array, weights: Array) -
     spread = coo_array(shares, shape=(len(points), len(places))).tocsr()
     sums = np.asarray(spread.sum(axis=1)).ravel()
     mean = diags_array(1 / np.where(sums > 0, sums, 1.0)) @ spread
-    if np.all(sums > 0):
-        return mean
     # corners that no point lies near: the mean of their neighbours, from the rim inwards
     edges, _, _ = edges_of(triangles)
     both = np.concatenate([edges, edges[:, ::-1]])

@@ -232,17 +232,14 @@ def _overlapping(mesh: SolidMesh, faces_a: Blocks, faces_b: Blocks, search_dista
         for number, faces in enumerate(blocks):
             here = np.flatnonzero(block == number)
             tried = faces[face[here]]
-            along, shapes, normal, flat = _cut(mesh.points[tried], positions[here], normals[here])
+            along, shapes, normal, facing = _cut(mesh.points[tried], positions[here], normals[here])
             nodes[here, : faces.shape[1]], values[here, : faces.shape[1]] = tried, shapes
             if blocks is faces_a:
                 positions[here] += along[:, None] * normals[here]
                 weights[here] /= np.abs(np.einsum("qi,qi->q", normal, normals[here]))
                 normals[here] = normal
             else:
-                gap[here] = along
-                good[here] = (
-                    (np.abs(along) <= search_distance) & (np.einsum("qi,qi->q", normal, normals[here]) < 0) & ~flat
-                )
+                gap[here], good[here] = along, facing & (np.abs(along) <= search_distance)
         sides.append((nodes, values))
     if not np.any(good):
         return None
@@ -284,9 +281,8 @@ def _project(
             if not len(left):
                 continue
             tried = faces[within[near[left, rank]]]
-            along, shapes, normal, flat = _cut(points[tried], positions[left], normals[left])
-            good = _inside(tried, shapes) & ~flat & (np.abs(along) <= search_distance)
-            good &= np.einsum("qi,qi->q", normal, normals[left]) < 0
+            along, shapes, _, facing = _cut(points[tried], positions[left], normals[left])
+            good = _inside(tried, shapes) & facing & (np.abs(along) <= search_distance)
             chosen, columns = left[good], slice(0, faces.shape[1])
             hit[chosen], distance[chosen] = True, along[good]
             nodes[chosen, columns], values[chosen, columns] = tried[good], shapes[good]
@@ -304,7 +300,7 @@ def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Ar
     """Where lines cut curved element faces (q, a, 3), by Newton's method.
 
     Returns distance along the line (q,), shape functions (q, a) and unit normals (q, 3) of the face there, and whether
-    the line runs along the face, so that there is no such place.
+    it faces the line's start: not where the line runs along the face, so that there is no such place.
     """
     kind = FACES[faces.shape[1]]
     low, high = kind.shape.box
@@ -324,4 +320,5 @@ def _cut(faces: Array, targets: Array, normals: Array) -> tuple[Array, Array, Ar
             break
     normal = np.cross(tangent[..., 0], tangent[..., 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    return along, kind.at(guess.T)[0], normal, flat
+    facing = ~flat & (np.einsum("qi,qi->q", normal, normals) < 0)
+    return along, kind.at(guess.T)[0], normal, facing

@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from faying.fe.elasticity import Solid
+from faying.fe.elasticity import Solid, chunks
 from faying.fe.elements import SOLIDS
 from faying.fe.elements.element import gradients_in_space
 from faying.fe.sides import sampled
 from faying.fe.solids import SolidMesh
 from faying.typing import Array
-
-CHUNK = 20_000  # elements at a time
 
 
 def pressure_forces(mesh: SolidMesh, face: str) -> Array:
@@ -28,10 +26,9 @@ def thermal_forces(mesh: SolidMesh, part: str, material: Solid, strain: float) -
     """
     stress = material.E / (1 - 2 * material.nu) * strain
     total = np.zeros((len(mesh.points), 3))
-    for cells in mesh.parts[part]:
-        _, weights, _, gradients = SOLIDS[cells.shape[1]].stiffness_rule
-        for begin in range(0, len(cells), CHUNK):
-            some = cells[begin : begin + CHUNK]
-            g, det = gradients_in_space(mesh.points, some, gradients)
-            np.add.at(total, some, stress * np.einsum("eq,eqai->eai", det * weights, g))
+    for name, cells, _ in chunks(mesh):
+        if name == part:
+            _, weights, _, gradients = SOLIDS[cells.shape[1]].stiffness_rule
+            g, det = gradients_in_space(mesh.points, cells, gradients)
+            np.add.at(total, cells, stress * np.einsum("eq,eqai->eai", det * weights, g))
     return total.ravel()

@@ -211,7 +211,6 @@ def split_at_joints(
 ) -> tuple[Array, Index, dict[str, Index]]:
     """Give each part nodes of its own where parts share them; returns new points, cells and triangles."""
     n = len(points)
-    key = np.unique(part_of_cell[:, None] * n + cells)  # one node per (part, old node)
-    new_cells = np.searchsorted(key, part_of_cell[:, None] * n + cells)
+    key, own = np.unique(part_of_cell[:, None] * n + cells, return_inverse=True)  # one node per (part, old node)
     faces = {name: np.searchsorted(key, triangle_part[name] * n + tri) for name, tri in triangles.items()}
-    return points[key % n], new_cells.astype(np.int64), {k: v.astype(np.int64) for k, v in faces.items()}
+    return points[key % n], own.reshape(cells.shape), faces

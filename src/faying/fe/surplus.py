@@ -16,6 +16,7 @@ import numpy as np
 from faying.fe.elasticity import Solid, add_rows, chunks, of_pairs, pair_blocks, pair_keys, stiffness_of, stress_of
 from faying.fe.elements import FACES, SOLIDS, Element
 from faying.fe.interface import Interface
+from faying.fe.sides import edge_ends
 from faying.fe.solids import SolidMesh
 from faying.numerics.product import product
 from faying.typing import Array, Index, Mask
@@ -244,21 +245,13 @@ def _higher(element: Element, places: Array) -> tuple[Array, Array]:
     return np.stack(values, axis=1), np.stack(slopes, axis=1)
 
 
-def _straight(points: Array, cells: Index) -> Array:
-    """Nodes (e, a, 3) [m] of tetrahedra, with those on edges in the middle between their corners."""
-    nodes = points[cells]
-    element = SOLIDS[cells.shape[1]]
-    if element.order == 2:
-        nodes[:, element.corners :] = nodes[:, np.array(element.edges)].mean(axis=2)
-    return np.asarray(nodes)
-
-
 def _assembled(mesh: SolidMesh, materials: Mapping[str, Solid], functions: Index, signs: Array, count: int) -> Any:
     """Stiffness of the functions (3 f, 3 f) [N/m]."""
     pairs, slot = np.unique(pair_keys((functions,), count), return_inverse=True)
     slot, total = slot.reshape(len(functions), -1), np.zeros((len(pairs), 9))
+    straight = mesh.points[edge_ends(mesh.blocks, SOLIDS, len(mesh.points))].mean(axis=1)
     for name, cells, here in chunks(mesh, CHUNK):
-        at, solid = _AtPoints.of(_straight(mesh.points, cells), signs[here]), materials[name]
+        at, solid = _AtPoints.of(straight[cells], signs[here]), materials[name]
         # the rule has a point of negative weight, whose root stiffness_of cannot take
         block = stiffness_of(at.slopes, np.maximum(at.weights, 0.0), solid.E, solid.nu)
         block -= stiffness_of(at.slopes, np.maximum(-at.weights, 0.0), solid.E, solid.nu)

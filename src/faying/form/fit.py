@@ -199,10 +199,9 @@ def figure(fit: FormFit, title: str) -> Any:
     values = 1e6 * fit.levelled()
     most = 5e5 * fit.zone.flatness or 1.0
     x, y = 1e3 * fit.places.T
-    if len(values) > 3:
-        picture = axes.tripcolor(x, y, values, shading="gouraud", rasterized=True, cmap="RdBu_r", vmin=-most, vmax=most)
-        bar = fig.colorbar(picture, ax=axes)
-        bar.set_label(f"{'gap' if fit.is_gap else 'height'} above the middle plane [µm]")
+    picture = axes.tripcolor(x, y, values, shading="gouraud", rasterized=True, cmap="RdBu_r", vmin=-most, vmax=most)
+    bar = fig.colorbar(picture, ax=axes)
+    bar.set_label(f"{'gap' if fit.is_gap else 'height'} above the middle plane [µm]")
     flatness = unit(show(fit.zone.flatness, "m", digits=3))
     title = f"{headline(title)}\nflatness {flatness} (minimum zone)"
     axes.set(aspect="equal", xlabel="x [mm]", ylabel="y [mm]", title=title)

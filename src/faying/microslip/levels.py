@@ -5,12 +5,10 @@ of their traction gives secant stiffnesses, under which the mode is found again,
 The mean opening, the lag and the harmonics up to the third are corrected once in a pass; `backbone` solves them all
 together.
 
-The basis in which damping at levels is found: the modes at rest, and what their slipping cycles ask for.
-
-A cycle of a mode that slips leaves forces in the full equations. The motion under them, of a joint that sticks, is the
-flexibility that the modes at rest lack. One round of it leaves 0.3 % of the damping, where the modes at rest alone miss
-43 % (two blocks, friction 0.03, 100 m/s2). Rounds end where what is left is small. It depends on
-the state alone.
+The basis holds the modes at rest, and what their slipping cycles ask for. A cycle of a mode that slips leaves forces in
+the full equations. The motion under them, of a joint that sticks, is the flexibility that the modes at rest lack. One
+round of it leaves 0.3 % of the damping, where the modes at rest alone miss 43 % (two blocks, friction 0.03, 100 m/s2).
+Rounds end where what is left is small. The basis depends on the state alone.
 """
 
 from collections.abc import Sequence
@@ -366,7 +364,7 @@ def level_basis(
     Args:
         structure: without springs per node on its joints.
         preload: its equilibrium under the bolts.
-        found: its modes at rest, at least `count` elastic ones to full accuracy.
+        found: its modes at rest, at least one elastic one for each of `levels` to full accuracy.
         laws: of the joints, one set after another that the basis is made for, the least friction first. It slips most:
             the next set is for modes that have no answer at the greatest level under it.
         levels: accelerations [m/s2] of each elastic mode from the lowest on, of which it takes the greatest at which it

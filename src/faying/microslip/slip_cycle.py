@@ -27,17 +27,13 @@ MAX_NEWTON_STEPS = 40  # Newton steps of a load step
 class StaticCycle:
     """One cycle: modal amplitude [m sqrt(kg)], angular frequency [rad/s], damping ratio [-].
 
-    displacements, loads (steps,): the loop, modal displacement and load over mass; openness: how far its last end is
-    from closing, of the load [-]; states (steps, m): coordinates of the loop.
+    loads (steps,): over mass, along the loop.
     """
 
     amplitude: float
     frequency: float
     damping: float
-    displacements: Array
     loads: Array
-    openness: float
-    states: Array
 
 
 def static_cycle(model: SlipModel, mode: int, amplitude: float, *, steps: int = STEPS) -> StaticCycle:
@@ -62,22 +58,18 @@ def static_cycle(model: SlipModel, mode: int, amplitude: float, *, steps: int = 
     for target in first:
         problem.move(amplitude * target)
     for _ in range(2):  # cycles; the last one is measured
-        path = [(problem.x.copy(), problem.load)]
+        path = [(problem.x[mode], problem.load)]
         for target in (*sweep, *-sweep):
             problem.move(amplitude * target)
-            path.append((problem.x.copy(), problem.load))
-    states, loads = np.array([x for x, _ in path]), np.array([load for _, load in path])
-    q = states[:, mode]
+            path.append((problem.x[mode], problem.load))
+    q, loads = np.array(path).T
     area = float(np.sum((loads[1:] + loads[:-1]) / 2 * np.diff(q)))
     squared = float((loads[0] - loads[steps]) / (q[0] - q[steps]))
     return StaticCycle(
         amplitude=amplitude,
         frequency=float(np.sqrt(squared)),
         damping=area / (2 * np.pi * squared * amplitude**2),
-        displacements=q,
         loads=loads,
-        openness=float(abs(loads[-1] - loads[0]) / abs(loads[0])),
-        states=states @ shapes.T,
     )
 
 

@@ -351,10 +351,6 @@ class Reduction:
         self.model = self.model.with_gaps(variant.gaps)
         return self.model
 
-    def evaluate_at(self, variant: Gapped, start: Array) -> Variant:
-        """Modes of a variant in the bases as they are; start: coefficients of a like equilibrium."""
-        return self.at(variant).evaluate(variant.laws, variant.forces, variant.friction, start)
-
     def train_together(self, variants: Sequence[Gapped], tolerance: float) -> list[PreloadState]:
         """Make the bases fit several variants, which costs less than one after the other; return their equilibria.
 

@@ -35,11 +35,6 @@ class Shape:
     inside: Callable[[Array, float], Mask] | None = None
     box: tuple[float, float] = (0.0, 0.0)
 
-    @property
-    def dimension(self) -> int:
-        """2 for a face, 3 for a solid."""
-        return len(self.corners[0])
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Element:
@@ -68,7 +63,7 @@ class Element:
     @property
     def dimension(self) -> int:
         """2 for a face, 3 for a solid."""
-        return self.shape.dimension
+        return len(self.shape.corners[0])
 
     @property
     def corners(self) -> int:
@@ -222,4 +217,4 @@ def gauss_rule(dimension: int) -> Callable[[Degree], tuple[Array, Array]]:
 
 def powers(dimension: int, order: int) -> list[tuple[int, ...]]:
     """All exponents up to `order` in each direction, the last running fastest."""
-    return [tuple(int(k) for k in row) for row in np.ndindex(*[order + 1] * dimension)]
+    return list(np.ndindex(*[order + 1] * dimension))

@@ -25,19 +25,13 @@ WEDGE = Shape(
     sides=((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
     rule=_rule,
 )
-ELEMENTS = (
+ELEMENTS = tuple(
     Element(
         shape=WEDGE,
-        order=1,
-        exponents=tuple(e for e in powers(3, 1) if e[0] + e[1] <= 1),
-        stiffness_degree=(2, 3),
+        order=order,
+        exponents=tuple(e for e in powers(3, order) if e[0] + e[1] <= order and (e[2] < 2 or e[0] + e[1] <= 1)),
+        stiffness_degree=(2, 2 * order + 1),
         mass_degree=(4, 5),
-    ),
-    Element(
-        shape=WEDGE,
-        order=2,
-        exponents=tuple(e for e in powers(3, 2) if e[0] + e[1] <= 2 and (e[2] < 2 or e[0] + e[1] <= 1)),
-        stiffness_degree=(2, 5),
-        mass_degree=(4, 5),
-    ),
+    )
+    for order in (1, 2)
 )
