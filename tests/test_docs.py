@@ -55,7 +55,8 @@ def checkout(tmp_path, monkeypatch):
 # a minute and more: tests/loads, tests/identify, tests/measured and tests/halfspace have the same in small
 LONG = {"bracket-under-10-g.md", "intervals.md", "with-intervals.md", "hammer-test.md", "speed.md"}
 LONG |= {"bolted-joint-numbers.md", "own-joint.md"}  # tests/sheet, tests/export and tests/setup
-LONG_PYTHON = {"intervals.md", "plates-and-bolts.md", "first-study.md"}  # tests/identify, tests/examples, tests/typed
+# tests/identify, tests/examples, tests/typed, tests/service
+LONG_PYTHON = {"intervals.md", "plates-and-bolts.md", "first-study.md", "bracket-on-a-shaker.md"}
 COMMANDED, CALLED = (
     [pytest.param(p, marks=[pytest.mark.slow] * (p.name in long), id=str(p.relative_to(ROOT))) for p in PAGES]
     for long in (LONG, LONG_PYTHON)

@@ -66,6 +66,7 @@ def test_one_draw_that_has_no_answer_loses_one_draw(study, complete, monkeypatch
     assert answer(complete)[0][3] == "5 to 95 %"
 
 
+@pytest.mark.slow
 def test_a_law_that_has_no_answer_leaves_the_waves(study, complete, monkeypatch):
     def stiff(variant):
         return variant.laws[0].scale > 1.0
@@ -77,6 +78,7 @@ def test_a_law_that_has_no_answer_leaves_the_waves(study, complete, monkeypatch)
     assert any("do not contain law, which found no answer" in note.text for note in found.notes)
 
 
+@pytest.mark.slow
 def test_a_lost_first_draw_leaves_the_law(study, complete, monkeypatch):
     first: list[np.ndarray] = []
 

@@ -107,6 +107,7 @@ def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, server, 
     assert (tmp_path / "results" / "result.nc").is_file()
 
 
+@pytest.mark.slow
 def test_from_the_text_alone_to_a_result(browser, server, example, tmp_path):
     """In an empty folder a STEP file is added, the study is typed, its fault mended by what the page says, and run."""
     typed = (example / "study.toml").read_text()
@@ -175,6 +176,7 @@ def test_a_view_that_was_chosen_stays_when_the_project_comes(browser, server, ex
         assert page.is_hidden("#structure")
 
 
+@pytest.mark.slow
 def test_an_answer_that_comes_late_does_not_replace_a_newer_one(browser, server, example):
     with page_at(browser, server) as page:
         with waiting(page):
@@ -208,6 +210,7 @@ def test_a_run_is_cancelled_and_leaves_nothing(browser, server, example, tmp_pat
     assert not list(tmp_path.glob("*.part"))
 
 
+@pytest.mark.slow
 def test_closing_the_page_loses_nothing(browser, server, example, tmp_path):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)

@@ -108,6 +108,7 @@ def test_the_server_compares_two_runs(server, tmp_path):
     assert "no such preload" in json.loads(ask(server, f"{pair}&preload=3%20kN")[1])["fault"]
 
 
+@pytest.mark.slow
 def test_two_runs_stand_next_to_each_other_in_the_page(browser, server, tmp_path):
     run_of(tmp_path, "jk")
     ask(server, "api/project")

@@ -161,6 +161,7 @@ def test_the_server_gives_maps_and_lines(server, scanned):
         assert "fault" in json.loads(ask(server, f"api/{wrong}")[1])
 
 
+@pytest.mark.slow
 def test_one_of_several_maps_of_heights_is_named_on_the_page(browser, server, tmp_path):
     """A container with heights of 1 and 3 um rms: the map that is named is read, drawn and looked at closely."""
     pytest.importorskip("SurfaceTopography", reason="reads containers")

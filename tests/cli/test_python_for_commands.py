@@ -131,6 +131,7 @@ def small(tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_a_condensed_joint(small, tmp_path):
     found = faying.condense(small, points=(("0 mm", "0 mm", "1 mm"), None))
     printed = call("condense", small, "--point-a", "0 mm; 0 mm; 1 mm", "--json")
@@ -158,6 +159,7 @@ def test_modes_of_matrices(small, tmp_path):
             faying.matrix_modes(*files, **wrong)
 
 
+@pytest.mark.slow
 def test_a_report(small, tmp_path):
     """The files of a run, and nothing where the folder cannot be made."""
     result = faying.run(small)
@@ -170,6 +172,7 @@ def test_a_report(small, tmp_path):
         faying.write_report(result, tmp_path / "file")
 
 
+@pytest.mark.slow
 def test_vibration_in_service(small, tmp_path):
     """The command prints what the result of a run has; faying.load reads what it saves."""
     text = small.read_text().replace("[[joint]]\n", "[[joint]]\nfriction = 0.2\n") + SHAKEN

@@ -253,6 +253,7 @@ def test_range_widens_with_the_doubt_of_the_hardness():
     assert np.all(series.greatest_factor(loading=False) > 1)
 
 
+@pytest.mark.slow
 def test_a_material_without_the_hardness_of_small_spots_is_said_with_its_key(tmp_path):
     """The same steel without brinell: softer spots, a stiffer law, and a sentence that names the key."""
     scan = scan_named("init", tmp_path)

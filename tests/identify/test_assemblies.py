@@ -84,6 +84,7 @@ def test_an_assembly_in_its_order_is_that_of_the_structure(all_drawn):
     assert found.modelled[0] == pytest.approx(structure.solve("4 kN", modes=4, engine="direct").frequencies, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_draws_are_the_same_in_any_number_of_processes(all_drawn):
     study, found = all_drawn
     again = faying.predict(study, assemblies=6, seed=3, jobs=2)

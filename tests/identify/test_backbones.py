@@ -240,6 +240,7 @@ def test_measured_points_of_the_study_stand_over_the_bands(found, tmp_path):
     assert "points" in fig.axes[0].get_legend_handles_labels()[1]
 
 
+@pytest.mark.slow
 def test_what_was_done_before_an_interruption_is_kept(plan, found, tmp_path, monkeypatch):
     out, calls = tmp_path / "p.nc", []
     curve = Follower.curve

@@ -59,6 +59,7 @@ def test_a_state_is_what_a_study_computes(result, state):
     assert shapes == pytest.approx(result.shapes[0], abs=1e-6 * np.abs(shapes).max())
 
 
+@pytest.mark.slow
 def test_both_engines_give_one_state(made, state):
     direct = made.solve("6 kN", modes=6, engine="direct")
     assert direct.modes.frequencies == pytest.approx(state.modes.frequencies, rel=1e-8)

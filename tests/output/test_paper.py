@@ -197,6 +197,7 @@ def test_s45c_joints_beside_the_models() -> None:
         assert mean[at] / comparison.responses[name].k_n[at] > 10
 
 
+@pytest.mark.slow
 def test_every_figure_draws(tmp_path: Path) -> None:
     figures = paper_asperity.FIGURES | paper.FIGURES
     for name, draw in figures.items():

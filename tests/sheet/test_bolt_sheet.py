@@ -367,6 +367,7 @@ def test_a_case_may_have_the_name_that_the_sheet_gives_to_heat_alone(made):
     assert inputs[2]["F_Au"] == pytest.approx(-400, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_another_case_never_takes_stress_from_a_bolt(made):
     """A moment bends the joint open and pulls the bolt, at no working load along it; the sheet counts its force."""
     bend = {"name": "bend", "force": [{"face": "upper.seat", "moment": ["0 N*m", "12 N*m", "0 N*m"]}]}

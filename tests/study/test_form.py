@@ -168,6 +168,7 @@ def test_a_form_that_is_given_has_no_waves(coarse, form):
     assert not [note for note in result.notes if note.code.startswith("waves")]
 
 
+@pytest.mark.slow
 def test_one_load_has_a_band_without_slopes(coarse):
     result = run(pulled(coarse, 2e3))
     assert result.wave_slopes is None

@@ -66,18 +66,21 @@ def test_tables_name_loads_in_kilonewtons(result):
     assert small.labels()["load"] == ("500 N", "9 kN", "4 kN")
 
 
+@pytest.mark.slow
 def test_both_engines_print_one_history(back, result):
     direct = faying.run(back, engine="direct")
     assert direct.frequencies == pytest.approx(result.frequencies, rel=1e-8)
     assert direct.level_damping == pytest.approx(result.level_damping, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_rising_preloads_are_what_they_are_without_a_history(result, tmp_path):
     alone = faying.run(study(tmp_path, BACK[:2]))
     assert result.frequencies[:2] == pytest.approx(alone.frequencies, rel=1e-8)
     assert alone.carried is None
 
 
+@pytest.mark.slow
 def test_settled_joints_are_those_that_came_back(result, tmp_path):
     """Before the greatest preload of the study they are as after it; at it they are on first loading."""
     settled = faying.run(study(tmp_path, BACK[:2], "settled"))
