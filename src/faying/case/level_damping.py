@@ -143,6 +143,7 @@ def _unanswered(case: Case, found: Sequence[DampedLevels]) -> list[Note]:
     where = ", ".join(f"mode {k + 1} at {case.study.modes.levels[i]:g} m/s2" for i, k in missing)
     text = (
         f"{where}: no damping, or no upper end of it ({FRICTION[0]:g} is the least friction where none is given); "
-        "friction does not hold the joints against the inertia of the parts; ask for smaller levels, or pull harder"
+        "joints slide there as a whole, or open at their edges; ask for smaller levels, pull harder, or follow one "
+        "mode by harmonic balance (faying backbone)"
     )
     return [Note(code="no-level-answer", text=text)]
