@@ -1,11 +1,13 @@
 """A draw, or a cause, that finds no answer is named and loses nothing else."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import faying
+from faying.answer.interval import Joints, WaveBand, _combined
 from faying.errors import NotConverged
 from faying.joint.modal import ModesChoice
 from faying.notes import INCOMPLETE
@@ -94,3 +96,16 @@ def test_a_lost_first_draw_leaves_the_law(study, complete, monkeypatch):
     assert found.interval_sources == complete.interval_sources
     # a draw is worth its distance from the others
     assert found.interval_best == pytest.approx(complete.interval_best, rel=0.3)
+
+
+def test_the_best_estimate_has_the_medians_of_the_law_in_every_draw():
+    """Not in the first alone, where the law may do more or less than in the others."""
+    f = np.array([100.0, 200.0, 300.0])
+    study = SimpleNamespace(uncertain=None, assumes_scatter=True)
+    states = [SimpleNamespace(damped=SimpleNamespace(frequencies=f), ends=None)]
+    draws = f * np.array([1.1, 0.9, 1.2, 1.0])[:, None, None]
+    medians = draws * np.array([0.5, 0.8, 1.0, 1.3])[:, None, None]
+    band = WaveBand(seeds=(0, 1, 2, 3), frequencies=draws, rms=np.zeros(1), ends=np.zeros((1, 2)))
+    joints = Joints(band=band, medians=list(zip(draws, medians, strict=True)))
+    best = _combined(SimpleNamespace(study=study, loads=np.ones(1)), states, None, None, joints).best
+    assert best == pytest.approx(np.exp(np.log(medians).mean(axis=0)), rel=1e-12)

@@ -170,14 +170,13 @@ class Joints:
 
     Args:
         band: draws of waves under the laws as they are; None where none are drawn.
-        drawn: the first of them; None where the case has the waves that it has.
-        about: the same draw with the medians of the law and of k_t/k_n; None where the joints cannot be changed.
-        pairs: both ends of each thing about that.
+        medians: the same draws, or the case as it is where none are drawn, and with the medians of the law, of k_t/k_n
+            and of the preload; none where the joints cannot be changed.
+        pairs: both ends of each thing about the first of these.
     """
 
     band: WaveBand | None = None
-    drawn: Found | None = None
-    about: Found | None = None
+    medians: Sequence[tuple[Found | None, Found]] = ()
     pairs: Mapping[str, tuple[Found, Found]] = field(default_factory=dict)
 
 
@@ -207,15 +206,20 @@ def intervals(
     draws = Draws.of(case)
     plain = ChangedCase.nothing(case)
     waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
-    middle = replace(waves[0] if waves else plain, laws=_laws(case), factor=_preload_factors(case)[1])
-    ends = _ends(case, middle)
-    found = frequencies_of(case, states, [*waves, middle], ends=[one for pair in ends.values() for one in pair])
-    of_waves, about, rest = found[: len(waves)], found[len(waves)], iter(found[len(waves) + 1 :])
-    pairs = {name: (next(rest), next(rest)) for name in ends}
+    medians = [replace(one, laws=_laws(case), factor=_preload_factors(case)[1]) for one in waves or [plain]]
+    ends = _ends(case, medians[0])
+    changes = [*waves, *reversed(medians)]  # the ends follow the modes of the last of them
+    found = iter(frequencies_of(case, states, changes, ends=[one for pair in ends.values() for one in pair]))
+    of_waves, of_medians = ([next(found) for _ in some] for some in (waves, medians))
+    of_medians.reverse()
+    pairs = {name: (next(found), next(found)) for name in ends}
     band = draws.band(states, of_waves)
-    of_joints = Joints(band=band, drawn=of_waves[0] if waves else None, about=about, pairs=pairs)
+    of_joints = Joints(band=band, medians=list(zip(of_waves or (None,), of_medians, strict=True)), pairs=pairs)
+    of_draws = [
+        drawn if isinstance(drawn, NotConverged) else at for drawn, at in of_joints.medians if drawn is not None
+    ]
     of_about = f"{', '.join(pairs)} and their medians"
-    lost = [*_incomplete({"draws of waves": of_waves, of_about: [about], **pairs})]
+    lost = [*_incomplete({"draws of waves": of_draws, of_about: of_medians[:1], **pairs})]
     return band, _combined(case, states, mesh, parts, of_joints), [*lost, *known, *draws.notes(case), *law_notes(case)]
 
 
@@ -309,18 +313,20 @@ def _combined(
     def of_group(values: Array) -> Array:
         return np.asarray(np.einsum("lij,...lj->...li", groups / groups.sum(axis=-1, keepdims=True), values))
 
-    found, moved, middle, about = {}, np.zeros(f.shape), np.zeros(f.shape), joints.about
-    drawn = f if joints.drawn is None else joints.drawn
+    found, moved, middle = {}, np.zeros(f.shape), np.zeros(f.shape)
+    about = joints.medians[0][1] if joints.medians else None
+    both = [(f if drawn is None else drawn, at) for drawn, at in joints.medians]
+    shifts = [np.log(at / drawn) for drawn, at in both if isinstance(at, np.ndarray) and isinstance(drawn, np.ndarray)]
+    if shifts:
+        middle += np.mean(shifts, axis=0)
     if isinstance(about, np.ndarray):
-        # of a draw that has no answer itself it is not known how far the others lie from it
-        middle += np.log(about / (f if isinstance(drawn, NotConverged) else drawn))
         for name, (low, high) in joints.pairs.items():
             if isinstance(low, np.ndarray) and isinstance(high, np.ndarray):
                 found[name] = np.log(np.stack([low, high]) / about)
     if joints.band is not None:
         logs = np.log(joints.band.frequencies / f)
         mean = logs.mean(axis=0)
-        middle += 0.0 if isinstance(drawn, NotConverged) else mean
+        middle += mean
         split = of_group((mean - of_group(mean)) ** 2)  # of twins, by waves that are nowhere alike
         found["waves"] = SCORE * np.sqrt(of_group(logs.var(axis=0, ddof=1)) + split) * ONE_EACH_WAY
     if case.study.assumes_scatter and all(state.ends and "scan" in state.ends for state in states):
