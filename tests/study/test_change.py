@@ -78,6 +78,7 @@ def test_a_whole_table_is_changed(study):
         ("geometry.sise", "9 mm", "'sise'; did you mean size?"),
         ("nothing.at.all", 1, "is not a key of a study: 'nothing'; give one of title, material"),
         ("bolt.left.preload", "1 kN", "no bolt is called 'left'; give one of bolt"),
+        ("joint.stiffness", 0.5, "sweeps and .uncertain. vary it"),
         ("bolt.prelod", "1 kN", "give one of bolt; did you mean preload"),
         ("bolt.bolt", "1 kN", "is a bolt, not a key; add one of its keys: name, faces"),
         ("support.face", "upper.end", r"the study has no \[\[support\]\]"),

@@ -34,6 +34,7 @@ from faying.study.keys.surface import SurfaceChoice
 from faying.study.keys.tables import STUDY
 from faying.study.keys.test import HammerChoice, TestChoice, read_test
 from faying.study.keys.uncertain import Known, UncertainChoice, extracted, read_uncertain
+from faying.study.keys.varied import varied
 from faying.study.keys.vibration import read_vibrations
 from faying.study.load import Load
 from faying.study.vibration import Excitation
@@ -453,6 +454,9 @@ def _set_in_list(table: dict[str, Any], what: Inner, parts: Sequence[str], value
         if not chosen:
             near = get_close_matches(parts[1], what.keys, n=1)
             hint = f"; did you mean {near[0]}?" if near else ""
+            number = varied(path)
+            if number is not None and number.owner is None:
+                raise InputError(f'"{path}" is not a key of [[{name}]]; sweeps and [uncertain] vary it')
             raise InputError(f'"{path}": no {name} is called {parts[1]!r}; give one of {", ".join(names)}{hint}')
         if not rest:
             raise InputError(f'"{path}" is a {name}, not a key; add one of its keys: {", ".join(what.keys)}')
