@@ -1,0 +1,193 @@
+"""The problems of reference-problems/: Faying's numbers by the code of each page, and each reference by its own route.
+
+Independent of Faying: closed forms, transfer matrices, and a dense active set.
+"""
+
+import csv
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+from scipy.optimize import brentq
+from scipy.special import erfcinv
+
+from tests import test_words
+
+FOLDER = Path(__file__).parents[2] / "reference-problems"
+PAGES = [FOLDER / "README.md", *sorted(FOLDER.glob("*/README.md"))]
+PROBLEMS = sorted(page.parent.name for page in PAGES[1:])
+
+
+def rows(problem):
+    with open(FOLDER / problem / "reference.csv", newline="", encoding="utf-8") as file:
+        return {row["quantity"]: row for row in csv.DictReader(file)}
+
+
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_the_code_of_a_page_finds_the_reference(problem, monkeypatch):
+    """Each row of the table, and no other, within its tolerance."""
+    (code,) = re.findall(r"```python\n(.*?)```", (FOLDER / problem / "README.md").read_text(encoding="utf-8"), re.S)
+    monkeypatch.chdir(FOLDER / problem)
+    names: dict[str, dict[str, float]] = {}
+    exec(code, names)
+    wanted = rows(problem)
+    assert set(names["found"]) == set(wanted)
+    off = {
+        name: f"{got:.8g} for {wanted[name]['value']}"
+        for name, got in names["found"].items()
+        if got != pytest.approx(float(wanted[name]["value"]), rel=float(wanted[name]["tolerance"]))
+    }
+    assert not off
+
+
+def conductance():
+    """Cooper, Mikic and Yovanovich: the fit and the theory."""
+    scale, found = 50.0 * 0.14 / 1.3e-6, {}
+    for mega in (2, 10):
+        ratio = mega * 1e6 / 2e9
+        x = np.sqrt(2) * erfcinv(2 * ratio)
+        found[f"fit at {mega} MPa"] = 1.25 * scale * ratio**0.95
+        found[f"theory at {mega} MPa"] = (
+            scale * np.exp(-(x**2) / 2) / (2 * np.sqrt(2 * np.pi)) / (1 - np.sqrt(ratio)) ** 1.5
+        )
+    ratio = (10e6 / (6e9 * (1.62 * 1.3 / 0.14) ** -0.25)) ** (1 / (1 - 0.071 * 0.25))
+    return found | {"fit at 10 MPa with Vickers hardness": 1.25 * scale * ratio**0.95}
+
+
+def shaken_mass():
+    """Miles' equation for one mass."""
+    speed = np.sqrt(10e9 * 4e-4 / (7800 * 4e-4 * 0.03))
+    rms = np.sqrt(np.pi / 2 * speed / (2 * np.pi) / 0.04)
+    return {
+        "frequency": speed / (2 * np.pi),
+        "damping ratio": 0.02,
+        "rms acceleration": rms,
+        "rms displacement": rms / speed**2,
+    }
+
+
+def lap():
+    """A joint and a beam with shear, whose moment is nothing in the joint; and Coulomb's law."""
+    force, area, length = 600.0, 4e-4, 0.01
+    bend = 2 * force * length**3 / (3 * 200e9 * 0.02**4 / 12)
+    shear = 2 * force * length / (5 / 6 * 100e9 * area)
+    return {
+        "displacement at 600 N": force / (100e9 * area) + bend + shear,
+        "greatest pressure": 4000 / area,
+        "force at which the joint slips": 0.3 * 4000,
+        "friction needed at 600 N": 600 / 4000,
+    }
+
+
+def opening():
+    """Linear pressure over a rectangle that bears no tension."""
+    height, force = 0.02, 4000.0
+    reach = 3 * (height / 2 - 20 / force)
+    return {
+        "edge pressure at 10 N m": force / height**2 + 10 / (height**3 / 6),
+        "opening moment": force * height / 6,
+        "edge pressure at 20 N m": 2 * force / (height * reach),
+        "open share at 20 N m": 1 - reach / height,
+    }
+
+
+def through(links, rod, lengths=(0.03, 0.02, 0.04)):
+    """Transfer matrix of three rods with a joint between; rod is the derivative of the state along x."""
+    matrix = np.eye(len(rod))
+    for number, length in enumerate(lengths):
+        matrix = expm(rod * length) @ (links @ matrix if number else matrix)
+    return matrix
+
+
+def spacers():
+    """Transfer matrices of rods and of beams with shear and rotatory inertia."""
+    E, G, rho, side = 200e9, 100e9, 7800.0, 0.02
+    area, inertia = side**2, side**4 / 12
+    across, along = 1e12, 2e12
+
+    def axial(f):
+        rod = np.array([[0, 1 / (E * area)], [-rho * area * (2 * np.pi * f) ** 2, 0]])
+        return through(np.array([[1, 1 / (along * area)], [0, 1]]), rod)[1, 0]
+
+    def bending(f):
+        pull = rho * (2 * np.pi * f) ** 2
+        rod = np.zeros((4, 4))  # of deflection, rotation, moment, shear force
+        rod[0, 1], rod[0, 3], rod[1, 2] = 1, 1 / (5 / 6 * G * area), 1 / (E * inertia)
+        rod[2, 1], rod[2, 3], rod[3, 0] = -pull * inertia, -1, -pull * area
+        link = np.eye(4)
+        link[0, 3], link[1, 2] = 1 / (across * area), 1 / (along * inertia)
+        return np.linalg.det(through(link, rod)[2:, :2])
+
+    found = {}
+    for name, left in (("axial", axial), ("bending", bending)):
+        f = np.linspace(500, 28e3, 120)
+        values = [left(one) for one in f]
+        turns = [k for k in range(len(f) - 1) if values[k] * values[k + 1] < 0]
+        found |= {f"{name} {n}": brentq(left, f[k], f[k + 1], xtol=1e-6) for n, k in enumerate(turns[:2], 1)}
+    return found
+
+
+def rough():
+    """The dense matrix of the map, and an active set."""
+    heights = np.loadtxt(FOLDER / "8-rough-contact" / "map.csv", delimiter=",") * 1e-6
+    n = len(heights)
+    wave = 2 * np.pi * np.fft.fftfreq(n, 10e-6)
+    q = np.hypot(*np.meshgrid(wave, wave))
+    answer = np.fft.ifft2(np.divide(2 / 100e9, q, where=q > 0, out=np.zeros_like(q))).real
+    y, x = (one.ravel() for one in np.indices(heights.shape))
+    matrix = answer[(y[:, None] - y) % n, (x[:, None] - x) % n]
+    z, found = heights.ravel(), {}
+    for mega in (20, 100):
+        touch = np.ones(n * n, dtype=bool)
+        while True:
+            count = np.count_nonzero(touch)
+            system = np.zeros((count + 1, count + 1))
+            system[:count, :count] = matrix[np.ix_(touch, touch)]
+            system[:count, count], system[count, :count] = -1, 1
+            *pressed, plane = np.linalg.solve(system, np.append(z[touch], mega * 1e6 * n * n))
+            pressure = np.zeros(n * n)
+            pressure[touch] = pressed
+            gap = matrix @ pressure - z - plane
+            new = (pressure > 0) | (~touch & (gap < 0))
+            if np.array_equal(new, touch):
+                break
+            touch = new
+        assert gap[~touch].min() > 0
+        found[f"share in contact at {mega} MPa"] = touch.mean()
+        found[f"greatest pressure at {mega} MPa"] = pressure.max()
+        found[f"mean gap at {mega} MPa"] = gap.mean()
+    return found
+
+
+REFERENCES = {
+    "3-lap-joint": lap,
+    "4-joint-opening": opening,
+    "5-stacked-spacers": spacers,
+    "7-random-vibration": shaken_mass,
+    "8-rough-contact": rough,
+    "9-conductance": conductance,
+}
+
+
+def test_each_problem_is_in_the_table_of_the_folder():
+    table = PAGES[0].read_text(encoding="utf-8")
+    assert set(PROBLEMS) == set(REFERENCES) == set(re.findall(r"\]\(([\w-]+)/README\.md\)", table))
+
+
+@pytest.mark.parametrize("problem", REFERENCES)
+def test_a_reference_is_found_again_by_its_own_route(problem):
+    wanted = {name: float(row["value"]) for name, row in rows(problem).items()}
+    assert REFERENCES[problem]() == pytest.approx(wanted, rel=1e-7)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
+def test_a_page_has_the_words_of_the_documentation(page):
+    text = page.read_text(encoding="utf-8")
+    plain = test_words.prose(text)
+    patterns = test_words.PRIVATE | test_words.HISTORY | test_words.PLACES
+    assert not list(test_words.found(patterns, plain))
+    assert not list(test_words.long_sentences(text))
+    assert not test_words.DECIMAL.search(text)
+    assert max(map(len, text.splitlines())) <= 120
