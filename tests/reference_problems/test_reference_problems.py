@@ -161,7 +161,34 @@ def rough():
     return found
 
 
+def turns():
+    """Two rigid bodies on an even joint: approach and rotation, by two equations for each turn of a bolt."""
+    force, side, length, d = 500.0, 0.02, 0.06, 2e-3
+    plain, core = (np.pi / 4 * one**2 for one in (d, d - 1.22687 * 0.4e-3))
+    axial = 200e9 / ((0.5 * d + length + 0.4 * d) / plain + 0.5 * d / core)
+    joint = 100e9 * np.diag([side**2, side**4 / 12])
+    arms = {"A": np.array([1, side / 8]), "B": np.array([1, -side / 8])}
+    shank = {one: axial * np.outer(arm, arm) for one, arm in arms.items()}
+    bend = np.diag([0, 200e9 * np.pi / 64 * d**4 / length])
+    tight, lost = {}, []  # where each bolt was let go
+    for turn, other in ("AB", "BA", "AB", "BA"):
+        stiff, load = joint, force * arms[turn]
+        if other in tight:
+            stiff = joint + shank[other] + bend
+            load = load + force * arms[other] + (shank[other] + bend) @ tight[other]
+        now = tight[turn] = np.linalg.solve(stiff, load)
+        lost.append(axial * arms["A"] @ (now - tight["A"]))
+    simple = (
+        axial
+        * (arms["A"] @ np.linalg.solve(joint, arms["B"]))
+        / (1 + axial * (arms["A"] @ np.linalg.solve(joint, arms["A"])))
+    )
+    assert lost[1::2] == pytest.approx([force * simple, force * simple**3], rel=0.01)  # without bending of the bolts
+    return {"loss of A, one pass": lost[1], "loss of A, two passes": lost[3]}
+
+
 REFERENCES = {
+    "10-tightening-order": turns,
     "3-lap-joint": lap,
     "4-joint-opening": opening,
     "5-stacked-spacers": spacers,
