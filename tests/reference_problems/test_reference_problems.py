@@ -1,6 +1,6 @@
 """The problems of reference-problems/: Faying's numbers by the code of each page, and each reference by its own route.
 
-Independent of Faying: closed forms, transfer matrices, and a dense active set.
+Independent of Faying: closed forms, transfer matrices, a dense active set, and a section of finite elements.
 """
 
 import csv
@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from scipy.special import erfcinv
 
 from tests import test_words
+from tests.reference_problems.axial_section import compliance
 
 FOLDER = Path(__file__).parents[2] / "reference-problems"
 PAGES = [FOLDER / "README.md", *sorted(FOLDER.glob("*/README.md"))]
@@ -161,6 +162,21 @@ def rough():
     return found
 
 
+def discs():
+    """The cone of VDI 2230 Part 1:2015, eqs. (5.1/24) and (5.1/27), and finite elements of the section."""
+    seat, hole, outer, length, E = 16e-3, 10.5e-3, 32e-3, 26e-3, 210e9
+    tangent = 0.362 + 0.032 * np.log(length / (2 * seat)) + 0.153 * np.log(outer / seat)
+    wide = seat + length * tangent
+    assert wide < outer
+    cone = np.log((seat + hole) * (wide - hole) / ((seat - hole) * (wide + hole)))
+    return {
+        "compliance of the discs": compliance(
+            seat=seat, hole=hole, outer=outer, length=length, k_n=1e14, E=E, nu=0.3, size=4e-4
+        ),
+        "compliance by the cone": 2 / (np.pi * E * hole * tangent) * cone,
+    }
+
+
 def turns():
     """Two rigid bodies on an even joint: approach and rotation, by two equations for each turn of a bolt."""
     force, side, length, d = 500.0, 0.02, 0.06, 2e-3
@@ -188,6 +204,7 @@ def turns():
 
 
 REFERENCES = {
+    "1-cone-compliance": discs,
     "10-tightening-order": turns,
     "3-lap-joint": lap,
     "4-joint-opening": opening,
