@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
 from scipy.linalg import expm
 from scipy.optimize import brentq
 from scipy.special import erfcinv
@@ -177,6 +178,28 @@ def discs():
     }
 
 
+def stub():
+    """Half of a flange as a clamped beam with shear, pulled at its middle, held by a bolt, on the bed with its end."""
+    E, wide, thick, end, arm, strip, d, half = 200e9, 0.02, 0.006, 0.04, 0.02, 0.0025, 2e-3, 1000.0
+    bend, shear = E * wide * thick**3 / 12, 5 / 6 * E / 2 * wide * thick
+    plain, core = (np.pi / 4 * one**2 for one in (d, d - 1.22687 * 0.4e-3))
+    bolt = ((0.5 * d + 0.012 + 0.4 * d) / plain + 0.5 * d / core) / E
+    x = np.linspace(0, end, 8001)
+    seat = np.abs(x - arm) < strip * (1 + 1e-9)
+
+    def rise(first, last):
+        """Mean deflection of the seat over that of the end, by 1 N upwards that is spread between two places."""
+        place = np.linspace(first, last, 201)[:, None]
+        force, moment = (place > x).mean(axis=0), np.maximum(place - x, 0).mean(axis=0)
+        rotation = cumulative_trapezoid(moment / bend, x, initial=0)
+        v = cumulative_trapezoid(rotation + force / shear, x, initial=0)
+        return v[seat].mean() - v[-1]
+
+    web, pull, tip = rise(0, strip), rise(arm - strip, arm + strip), rise(end, end)
+    prying = (half * (web - pull - bolt) + bolt) / (pull - tip + bolt)  # 1 N of preload
+    return {"force of a bolt": half + prying, "prying force": prying}
+
+
 def turns():
     """Two rigid bodies on an even joint: approach and rotation, by two equations for each turn of a bolt."""
     force, side, length, d = 500.0, 0.02, 0.06, 2e-3
@@ -205,6 +228,7 @@ def turns():
 
 REFERENCES = {
     "1-cone-compliance": discs,
+    "2-t-stub-prying": stub,
     "10-tightening-order": turns,
     "3-lap-joint": lap,
     "4-joint-opening": opening,
