@@ -208,10 +208,11 @@ def intervals(
     waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
     medians = [replace(one, laws=_laws(case), factor=_preload_factors(case)[1]) for one in waves or [plain]]
     ends = _ends(case, medians[0])
-    changes = [*waves, *reversed(medians)]  # the ends follow the modes of the last of them
-    found = iter(frequencies_of(case, states, changes, ends=[one for pair in ends.values() for one in pair]))
+    changes = [*waves, *medians, *(one for pair in ends.values() for one in pair)]
+    # modes of a draw under the medians are those of the draw, and those of the ends are those of the first median
+    after = [*[None] * len(waves), *(range(len(waves)) or [None]), *[len(waves)] * (2 * len(ends))]
+    found = iter(frequencies_of(case, states, changes, after))
     of_waves, of_medians = ([next(found) for _ in some] for some in (waves, medians))
-    of_medians.reverse()
     pairs = {name: (next(found), next(found)) for name in ends}
     band = draws.band(states, of_waves)
     of_joints = Joints(band=band, medians=list(zip(of_waves or (None,), of_medians, strict=True)), pairs=pairs)

@@ -12,7 +12,7 @@ from faying.joint.joint_law import JointLaw
 from faying.numerics.follow import follow
 from faying.reduction.reduce import Gapped, Reduction
 from faying.reduction.reduced import Variant
-from faying.typing import Array
+from faying.typing import Array, Index
 
 # of a frequency at the loads trained on, where what is changed moves one by a thousandth and more; between them, 1e-3
 TOLERANCE = 1e-4
@@ -40,16 +40,16 @@ def can_change(case: Case) -> bool:
 
 
 def frequencies_of(
-    case: Case, states: Sequence[LoadedCase], changes: Sequence[ChangedCase], *, ends: Sequence[ChangedCase] = ()
+    case: Case, states: Sequence[LoadedCase], changes: Sequence[ChangedCase], after: Sequence[int | None]
 ) -> list[Array | NotConverged]:
-    """Frequencies [Hz] (loads, m) of each change and then of each of the ends, or why it has none.
+    """Frequencies [Hz] (loads, m) of each change, or why it has none.
 
     The basis is made for the first and the last load of all of them. Frequencies are in the order of the modes of the
-    states, each that of the mode whose shape it has: those of the ends by way of the last change. Where joints have
-    carried more before, a change makes of them what it makes of first loading, relative.
+    states, each that of the mode whose shape it has, by way of the change whose place `after` has: two small steps mix
+    modes less than a large one. Where joints have carried more before, a change makes of them what it makes of first
+    loading, relative.
     """
-    every = [*changes, *ends]
-    if not every:
+    if not changes:
         return []
     at = sorted({0, int(np.argmax([state.load for state in states]))})
     last, structure = states[-1], case.structure
@@ -67,7 +67,7 @@ def frequencies_of(
     def loads_of(one: ChangedCase) -> list[Gapped]:
         return [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
 
-    variants = [loads_of(one) for one in every]
+    variants = [loads_of(one) for one in changes]
     starts = _trained(reduction, [[loads[k] for k in at] for loads in variants])
     solved = next((start for start in starts if not isinstance(start, NotConverged)), None)
     if solved is None:
@@ -78,7 +78,8 @@ def frequencies_of(
     as_first = np.stack([one.frequencies for one in before])
     stiffer = np.where(remembered, np.stack([state.damped.frequencies for state in states]) / as_first, 1.0)
     out: list[Array | NotConverged] = []
-    for number, (loads, start) in enumerate(zip(variants, starts, strict=True)):
+    known: dict[int | None, tuple[list[Variant], list[Index]]] = {None: (before, way)}
+    for number, (loads, start, by_way) in enumerate(zip(variants, starts, after, strict=True)):
         try:
             if isinstance(start, NotConverged):
                 raise start
@@ -86,14 +87,13 @@ def frequencies_of(
         except NotConverged as fault:
             out.append(fault)
             continue
-        mass = reduction.model.dynamic_mass
+        mass, (before, way) = reduction.model.dynamic_mass, known.get(by_way, known[None])
         order = [
             follow(old.shapes, new.shapes, mass, old.frequencies)[first]
             for old, new, first in zip(before, found, way, strict=True)
         ]
         out.append(stiffer * np.stack([one.frequencies[k] for one, k in zip(found, order, strict=True)]))
-        if number == len(changes) - 1:
-            before, way = found, order
+        known[number] = found, order
     return out
 
 
