@@ -30,9 +30,8 @@ def pytest_addoption(parser):
 def pytest_collection_modifyitems(config, items):
     half = config.getoption("half")
     if half is not None:
-        chosen = items[int(half) :: 2]
-        config.hook.pytest_deselected(items=[item for item in items if item not in set(chosen)])
-        items[:] = chosen
+        config.hook.pytest_deselected(items=items[1 - int(half) :: 2])
+        items[:] = items[int(half) :: 2]
 
 
 @pytest.fixture

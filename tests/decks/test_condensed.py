@@ -8,7 +8,7 @@ import pytest
 import faying
 from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
 from faying.decks.programs import CONDENSED, module_of
-from faying.export.condense import carried
+from faying.fe.elasticity import unit_motions
 
 NODES = (7, 12)
 
@@ -27,7 +27,7 @@ def deck(unit="mm", force="N", first=(0.01, -0.02, 0.03), second=(0.01, -0.02, 0
     turn = np.zeros((6, 12))
     for k, sign in ((0, -1), (1, 1)):
         block = np.eye(6)
-        block[:3] = carried(points.mean(axis=0) - points[k])
+        block[:3] = unit_motions(points.mean(axis=0) - points[k])
         turn[:, 6 * k : 6 * k + 6] = sign * block
     return CondensedDeck(
         points=points,

@@ -12,7 +12,7 @@ from faying.case.ends import quantiles, ratios_of
 from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
 from faying.case.part_tests import KnownParts
-from faying.case.scatter import LEVELS, SCATTER, SCORE, force_factors, mode_sd, stated, structure_sd
+from faying.case.scatter import LEVELS, SCATTER, SCORE, force_factors, lists_waves, mode_sd, stated, structure_sd
 from faying.case.solve import LoadedCase
 from faying.case.waves import drawn_on
 from faying.errors import NotConverged
@@ -136,11 +136,11 @@ class Draws:
 
 def _wavy(case: Case) -> list[_Wavy | None]:
     """Where waves are drawn on each joint; None where it stays as it is."""
-    structure, listed, out = case.structure, stated(case.study.uncertain), list[_Wavy | None]()
-    for joint, choice, surface in zip(structure.joints, case.study.joints, case.surfaces, strict=True):
+    study, structure, out = case.study, case.structure, list[_Wavy | None]()
+    for joint, choice, surface in zip(structure.joints, study.joints, case.surfaces, strict=True):
         interface = joint.interface
-        found = drawn_on(case.study, structure.mesh, choice, interface, surface)
-        if found is None or not (case.study.assumes_scatter or f"joint.{choice.name}.form.waviness_seed" in listed):
+        found = drawn_on(study, structure.mesh, choice, interface, surface)
+        if found is None or not (study.assumes_scatter or lists_waves(study.uncertain, choice.name)):
             out.append(None)
             continue
         axes, laid = found
@@ -206,7 +206,8 @@ def intervals(
     draws = Draws.of(case)
     plain = ChangedCase.nothing(case)
     waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
-    medians = [replace(one, laws=_laws(case), factor=_preload_factors(case)[1]) for one in waves or [plain]]
+    laws, (_, factor, _) = _laws(case), _preload_factors(case)
+    medians = [replace(one, laws=laws, factor=factor) for one in waves or [plain]]
     ends = _ends(case, medians[0])
     changes = [*waves, *medians, *(one for pair in ends.values() for one in pair)]
     # modes of a draw under the medians are those of the draw, and those of the ends are those of the first median
@@ -278,10 +279,9 @@ def law_notes(case: Case) -> Iterator[Note]:
     known = stated(case.study.uncertain)
     laws = [joint.law for joint in case.structure.joints]
     for joint, law, factors in zip(case.study.joints, laws, law_factors(case), strict=True):
-        if factors is None and not case.study.assumes_scatter:
-            continue
         if factors is None:
-            unknown.setdefault(law.model.name, []).append(joint.name)
+            if case.study.assumes_scatter:
+                unknown.setdefault(law.model.name, []).append(joint.name)
             continue
         given = f"joint.{joint.name}.stiffness" in known or "joint.stiffness" in known
         if not (given or 1 / NOTED_RATIO <= factors[1] <= NOTED_RATIO):
@@ -332,9 +332,9 @@ def _combined(
         found["waves"] = SCORE * np.sqrt(of_group(logs.var(axis=0, ddof=1)) + split) * ONE_EACH_WAY
     if case.study.assumes_scatter and all(state.ends and "scan" in state.ends for state in states):
         found["scan"] = np.log(np.stack([(state.ends or {})["scan"] for state in states], axis=1) / f)
-    if len(states) > 1 and np.ptp(_preload_factors(case)):
+    if len(states) > 1 and np.ptp(factors := _preload_factors(case)):
         curve = about if isinstance(about, np.ndarray) else f
-        found["preload"] = _by_preload(case.loads, curve, _preload_factors(case))
+        found["preload"] = _by_preload(case.loads, curve, factors)
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):
         found[name] = SCORE * sd * ONE_EACH_WAY * np.ones(f.shape)
     if parts is not None:

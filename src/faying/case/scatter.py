@@ -114,6 +114,11 @@ def stated(choice: UncertainChoice | None) -> Mapping[str, Distribution]:
     return {} if choice is None else {one.key: one.distribution for one in choice.inputs}
 
 
+def lists_waves(choice: UncertainChoice | None, joint: str) -> bool:
+    """Whether [uncertain] draws the waves of a joint, or of all joints."""
+    return not {f"joint.{joint}.form.waviness_seed", "joint.form.waviness_seed"}.isdisjoint(stated(choice))
+
+
 def force_factors(study: Study, bolt: str, shares: Array) -> Array:
     """Force of a bolt over the one that the study states [-], at shares of probability of any shape.
 

@@ -12,6 +12,7 @@ import numpy as np
 from faying.case.case import Case, Progress
 from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
 from faying.errors import InputError, NotConverged
+from faying.fe.elasticity import unit_motions
 from faying.fe.interface import Interface
 from faying.joint.assembled_parts import unknowns_of
 from faying.joint.preload_case import preload_index
@@ -38,16 +39,6 @@ SEED = 20240611
 OPEN = 1e-12  # of its greatest: a stiffness below it leaves the joint free to move
 
 Tie = Literal["mean", "rigid"]
-
-
-def carried(arm: Array) -> Array:
-    """Motion (..., 3, 6) of places at `arm` (..., 3) [m] from a point, under its translations and rotations."""
-    out = np.zeros((*arm.shape[:-1], 3, 6))
-    out[..., :3] = np.eye(3)
-    out[..., 0, 4], out[..., 0, 5] = arm[..., 2], -arm[..., 1]
-    out[..., 1, 3], out[..., 1, 5] = -arm[..., 2], arm[..., 0]
-    out[..., 2, 3], out[..., 2, 4] = arm[..., 1], -arm[..., 0]
-    return out
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,7 +79,7 @@ class CondensedJoint:
     def _motions(self) -> Array:
         """Opening and slips (q, 3, 6) of each spring under the six motions."""
         i = self.springs.interface
-        return np.asarray(np.einsum("qij,qjk->qik", i.frames, carried(i.positions - self.point)))
+        return np.asarray(np.einsum("qij,qjk->qik", i.frames, unit_motions(i.positions - self.point)))
 
     @cached_property
     def _share(self) -> Array:
@@ -116,7 +107,7 @@ class CondensedJoint:
         turn = np.zeros((6, 12))
         for columns, at, sign in ((slice(0, 6), first, -1.0), (slice(6, 12), second, 1.0)):
             block = np.eye(6)
-            block[:3] = carried(self.point - np.asarray(at, dtype=float))
+            block[:3] = unit_motions(self.point - np.asarray(at, dtype=float))
             turn[:, columns] = sign * block
         return turn.T @ self.stiffness @ turn, turn.T @ self.loss @ turn
 
@@ -231,7 +222,7 @@ def _rigid(
             raise InputError(f"a support holds some of the face {face!r}, which rigid ties would move")
     tied = unknowns_of(np.concatenate(face_nodes))
     free = np.setdiff1d(np.arange(mesh.unknowns), tied)
-    blocks = [csr_array(carried(mesh.points[nodes] - joint.point).reshape(-1, 6)) for nodes in face_nodes]
+    blocks = [csr_array(unit_motions(mesh.points[nodes] - joint.point).reshape(-1, 6)) for nodes in face_nodes]
     rows = csr_array((np.ones(len(tied)), (tied, np.arange(len(tied)))), shape=(mesh.unknowns, len(tied)))
     tie = hstack([eye_array(mesh.unknowns, format="csc")[:, free], rows @ csr_array(block_diag(blocks))]).tocsr()
     turn = np.concatenate([-np.eye(6), np.eye(6)], axis=1)

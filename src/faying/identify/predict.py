@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.case.case import mates_notes
 from faying.case.provenance import provenance
-from faying.case.scatter import discrepancy, with_assumed
+from faying.case.scatter import discrepancy, lists_waves, with_assumed
 from faying.errors import InputError
 from faying.identify.assemblies import Assemblies
 from faying.identify.identity import paired, paired_modes
@@ -179,9 +179,8 @@ def _notes(study: Study, found: Prediction) -> Iterator[Note]:
     """What a reader of the intervals ought to know."""
     yield from (*cut_notes(found.inputs.columns), *part_test_notes(study))
     choice = study.uncertain or UncertainChoice()
-    drawn, seed = {one.key for one in choice.inputs}, "form.waviness_seed"
-    flat = [one.name for one in study.joints if one.form is None and f"joint.{one.name}.{seed}" not in drawn]
-    if flat and not choice.only and f"joint.{seed}" not in drawn:
+    flat = [one.name for one in study.joints if one.form is None and not lists_waves(choice, one.name)]
+    if flat and study.assumes_scatter:
         text = "no waves are drawn: the faces are curved, have no room for waves, or are seats of a solid bolt"
         yield Note(code="no-waves", text=f"{joint_names(flat)}: {text}")
     for reason, count in found.reasons.items():

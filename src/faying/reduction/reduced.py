@@ -124,7 +124,7 @@ def evenly_pressed(stiffness: Array, joints: Sequence[tuple[ReducedMotion, Joint
         push, tangent, laid = load, stiffness, []
         for (motion, law), mean in zip(joints, means, strict=True):
             k_n, k_t = (float(k) for k in law.stiffness(np.asarray(mean)))
-            tangent = tangent + motion.springs(*np.broadcast_to([[k_n], [k_t]], (2, len(motion.gap))))
+            tangent = tangent + joint_stiffness(motion.relative, motion.weights[:, None] * np.array([k_n, k_t, k_t]))
             laid.append((k_n, mean - k_n * (float(law.approach(mean)) + motion.gap)))
             push = push + motion.relative[::3].T @ (laid[-1][1] * motion.weights)
         try:

@@ -35,7 +35,7 @@ class Ghaednia(JacksonGreenBase):
                 f"Ghaednia: tangent_ratio = {self.tangent_ratio}; it must be 0 up to below 1, such as 0.02"
             )
 
-    def _beyond(self, x: Array) -> AsperityCurve:
+    def _yielding(self, x: Array) -> AsperityCurve:
         P, A, dP = self._plastic(x, "cosine")
         s = 1 - exp(-3.3 * self.tangent_ratio)
         hertz_work = 0.4 * (x**2.5 - ELASTIC_END**2.5)

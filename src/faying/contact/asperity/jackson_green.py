@@ -39,18 +39,18 @@ class JacksonGreenBase(AsperityModel):
         return (ELASTIC_END,)
 
     @abstractmethod
-    def _beyond(self, x: Array) -> AsperityCurve:
-        """The model at x > 1.9; W counted from there."""
+    def _yielding(self, x: Array) -> AsperityCurve:
+        """The model at x > 1.9, where it yields; W counted from there."""
 
     def curve(self, x: Array) -> AsperityCurve:
         """Return the model without units at x >= 0."""
         low, high = np.minimum(x, ELASTIC_END), np.maximum(x, ELASTIC_END)
-        elastic, beyond = x <= ELASTIC_END, self._beyond(high)
+        elastic, yielding = x <= ELASTIC_END, self._yielding(high)
         return AsperityCurve(
-            P=np.where(elastic, low**1.5, beyond.P),
-            A=np.where(elastic, low, beyond.A),
-            dP=np.where(elastic, 1.5 * low**0.5, beyond.dP),
-            W=0.4 * low**2.5 + beyond.W,
+            P=np.where(elastic, low**1.5, yielding.P),
+            A=np.where(elastic, low, yielding.A),
+            dP=np.where(elastic, 1.5 * low**0.5, yielding.dP),
+            W=0.4 * low**2.5 + yielding.W,
         )
 
     def _plastic(self, x: Array, form: str) -> tuple[Array, Array, Array]:
@@ -107,5 +107,5 @@ class JacksonGreen(JacksonGreenBase):
         if self.hardness not in ("exponential", "cosine"):
             raise InputError(f'JG: hardness = {self.hardness!r}; use "exponential" or "cosine"')
 
-    def _beyond(self, x: Array) -> AsperityCurve:
+    def _yielding(self, x: Array) -> AsperityCurve:
         return AsperityCurve(*self._plastic(x, self.hardness), self._work(x, self.hardness))
