@@ -26,7 +26,6 @@ EXAMPLES = sorted(
 )
 OFF = {
     "t-specimen": pytest.mark.xfail(reason="at 8 kN, between the loads trained on, offsets of waves are 8e-4 apart"),
-    "solid-bolt": pytest.mark.xfail(reason="modes 5 and 6 mix by half at an end: the last digits say which is which"),
 }
 by_parts = pytest.mark.skipif("pardiso" not in available(), reason="only PARDISO factorises part by part")
 
