@@ -10,12 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_trapezoid
+from scipy.integrate import cumulative_trapezoid, trapezoid
 from scipy.linalg import expm
 from scipy.optimize import brentq
 from scipy.special import erfcinv
 
 from tests import test_words
+from tests.helpers.shaken import integrated
+from tests.helpers.slips import describing
 from tests.reference_problems.axial_section import compliance, tapped
 from tests.reference_problems.calculix_section import bonded
 
@@ -69,6 +71,35 @@ def shaken_mass():
         "damping ratio": 0.02,
         "rms acceleration": rms,
         "rms displacement": rms / speed**2,
+    } | slider()
+
+
+def slider():
+    """A mass on a spring and a Jenkins element: stochastic averaging, and integration in time."""
+    mass, spring, limit, rest, noise = 7800 * 4e-6, 1e6, 20.0, 0.005, 20.0
+    a = np.geomspace(1e-9, 1e-3, 4000)
+    secant, lost = np.array([describing(spring, limit, one) for one in a]).T
+    speed = np.sqrt((spring + secant) / mass)
+    damping = rest + lost / (2 * np.pi * mass * speed**2 * a**2)
+    spent = cumulative_trapezoid(2 * damping * speed**3 * a, a, initial=0)
+    density = a * np.exp(-4 / noise * spent)
+
+    def mean(values):
+        return trapezoid(values * density, a) / trapezoid(density, a)
+
+    square, cube, power = mean(a**2), mean(speed**3 * a**2), mean(damping * speed**3 * a**2)
+    assert power == pytest.approx(noise / 4, rel=1e-3)  # over the mass: what white noise gives
+    one = {"masses": np.array([mass]), "springs": np.array([spring]), "stiffness": np.array([spring])}
+    x, *_ = integrated(
+        **one, limits=np.array([limit]), density=noise, damping=rest, time=0.5, realisations=400, steps=40
+    )
+    squares = (x**2).mean(axis=(0, 2))
+    assert squares.std() / 20 / squares.mean() / 2 < 0.0015  # standard error of the rms, of 400
+    return {
+        "slider: frequency": np.cbrt(cube / square) / (2 * np.pi),
+        "slider: damping ratio": power / cube,
+        "slider: rms by averaging": np.sqrt(square / 2),
+        "slider: rms by integration in time": np.sqrt(squares.mean()),
     }
 
 
