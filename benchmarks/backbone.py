@@ -10,16 +10,16 @@ each takes until then is its own affair and printed.
 
 import argparse
 import os
-import subprocess
-import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
 import numpy as np  # noqa: E402  the thread limits are read when it is loaded
+from peers.peer import ask  # noqa: E402
 
 from faying import Study  # noqa: E402
 from faying.case.case import Case  # noqa: E402
@@ -37,7 +37,7 @@ REPEATS = 10  # of the evaluation that is timed
 def basis_of(study: Study, mode: int) -> tuple[SlipBasis, Case]:
     case = Case.of(study)
     structure = case.structure
-    preload = checked_preload(structure, structure.assembly(), study.forces(len(study.loads) - 1), order=study.order)
+    preload = checked_preload(structure, structure.assembly(), study.preloads[-1])
     springs = structure.springs(preload.pressures)
     modes = lowest_modes(
         structure.coupled(springs)[0],
@@ -110,56 +110,52 @@ def ours(model: SlipModel, mode: int, low: float, high: float, samples: int) -> 
 
 
 def theirs(
-    model: SlipModel,
-    mode: int,
-    law: str,
-    low: float,
-    high: float,
-    samples: int,
-    most: int,
-    folder: Path,
-    python: str,
-) -> tuple[float, np.ndarray]:
+    model: SlipModel, mode: int, law: str, low: float, high: float, samples: int, most: int, **where: Any
+) -> tuple[dict[str, Any], np.ndarray, np.ndarray]:
+    """What tmdsimpy finds, and a trial motion (7, m) with the forces (7, m) of the same elements by Faying.
+
+    where: its interpreter, and what `ask` takes; the others as for `ours`.
+    """
     parts = [elements(joint) for joint in model.joints]
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     omega, shapes = model.modes
     count, size = 7, len(model.mass)
-    trial = np.random.default_rng(1).normal(size=(count, size)) * high / 3
+    motion = np.random.default_rng(1).normal(size=(count, size)) * high / 3 @ shapes.T
     static = sum(
         joint.relative.T @ (joint.weights[:, None] * joint.at_rest[0] * [1, 0, 0]).ravel() for joint in model.joints
     )
-    with tempfile.TemporaryDirectory() as scratch:
-        given, out = Path(scratch, "case.npz"), Path(scratch, "out.npz")
-        np.savez(
-            given,
-            **joined,
-            law=law,
-            mass=model.mass,
-            stiffness=model.stiffness,
-            friction=model.joints[0].law.friction,
-            frequency=omega[mode],
-            shape=shapes[:, mode],
-            trial=(trial @ shapes.T)[[0, *range(1, count)]],
-            static=static,
-            low=low,
-            high=high,
-            samples=samples,
-            harmonics=3,
-            most=most,
-        )
-        flags = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
-        environment = os.environ | {"PYTHONPATH": str(folder), "XLA_FLAGS": flags, "JAX_ENABLE_X64": "1"}
-        command = ["taskset", "-c", "0", python, str(Path(__file__).with_name("backbone_tmdsimpy.py")), given, out]
-        subprocess.run(command, env=environment, check=True)
-        found = dict(np.load(out))
-    motion = trial @ shapes.T
+    found = ask(
+        witness="backbone.py",
+        **where,
+        **joined,
+        law=law,
+        mass=model.mass,
+        stiffness=model.stiffness,
+        friction=model.joints[0].law.friction,
+        frequency=omega[mode],
+        shape=shapes[:, mode],
+        trial=motion,
+        static=static,
+        low=low,
+        high=high,
+        samples=samples,
+        harmonics=3,
+        most=most,
+    )
+    forces = model.forces(motion, derivative=False, samples=samples).force - motion @ model.stiffness
+    forces[0] += static
+    return dict(found) | {"forces": found["forces"].reshape(count, size)}, motion, forces
+
+
+def timed(model: SlipModel, mode: int, law: str, *limits: float, **where: Any) -> tuple[float, np.ndarray]:
+    """Print the times of tmdsimpy, and return its seconds and its curve."""
+    *_, high, samples, _ = limits
+    found, motion, forces = theirs(model, mode, law, *limits, **where)
     start = time.process_time()
     for _ in range(REPEATS):
-        evaluated = model.forces(motion, samples=samples)
+        model.forces(motion, samples=int(samples))
     each = (time.process_time() - start) / REPEATS
-    forces = evaluated.force - motion @ model.stiffness
-    forces[0] += static
-    miss = np.abs(found["forces"].reshape(count, size) - forces).max() / np.abs(forces[1:]).max()
+    miss = np.abs(found["forces"] - forces).max() / np.abs(forces[1:]).max()
     curve = np.stack([found["amplitude"], found["frequency"], found["damping"]], axis=1)
     print(
         f"  tmdsimpy  {found['seconds']:8.2f} s CPU  {len(curve):3d} points to {curve[-1, 0] / high:.2f} of the last "
@@ -201,11 +197,11 @@ def main() -> None:
     start = time.process_time()
     basis, case = basis_of(Study.read(given.study), given.mode)
     mode = given.mode - 1
+    frequency = basis.modes.frequencies[basis.structure.rigid_count + mode]
     print(
-        f"preload, modes, first basis: {time.process_time() - start:.1f} s CPU; mode {given.mode} at "
-        f"{basis.linear_frequency:.2f} Hz"
+        f"preload, modes, first basis: {time.process_time() - start:.1f} s CPU; mode {given.mode} at {frequency:.2f} Hz"
     )
-    omega = 2 * np.pi * basis.linear_frequency
+    omega = 2 * np.pi * frequency
     high = given.high / (np.abs(basis.shape).max() * omega**2)
     low = high / 10**given.decades
 
@@ -223,7 +219,8 @@ def main() -> None:
         print(f"{law}: {points} points, {len(model.mass)} coordinates, one slider, {given.samples} instants")
         seconds, own, _ = ours(model, mode, low, high, given.samples)
         if given.tmdsimpy is not None:
-            other, curve = theirs(model, mode, law, low, high, given.samples, given.most, given.tmdsimpy, given.python)
+            where = {"python": given.python, "path": given.tmdsimpy, "before": ("taskset", "-c", "0")}
+            other, curve = timed(model, mode, law, low, high, given.samples, given.most, **where)
             each = other / len(curve) / (seconds / len(own))
             print(f"  ratio of CPU seconds: {other / seconds:.0f} per curve, {each:.0f} per point of it")
             compare(own, curve)

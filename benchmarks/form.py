@@ -28,7 +28,7 @@ def measured(study):
     structure.dynamic_matrices, structure.loads, structure.rigid  # noqa: B018
     begin = time.process_time()
     problem = structure.assembly()
-    found = [checked_preload(structure, problem, study.forces(k)) for k in range(len(study.loads))]
+    found = [checked_preload(structure, problem, one) for one in study.preloads]
     preload = time.process_time() - begin
     begin = time.process_time()
     run(study)

@@ -24,11 +24,11 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 import numpy as np  # noqa: E402  the thread counts come first
+from peers.peer import ask  # noqa: E402
 
 from faying.halfspace import error_bound, solve_half_space  # noqa: E402
 from tests.helpers.self_affine import self_affine  # noqa: E402
 
-WITNESS = Path(__file__).with_name("halfspace_witness.py")
 PEERS = {"tamaas": 1e-6, "contactmechanics": 1e-6, "aspher-periodic": 1e-7}
 
 
@@ -43,14 +43,11 @@ def ours(h, pressure, hardness, repeats=3, **options):
 
 
 def theirs(code, python, h, pressure, hardness, tol):
-    with tempfile.TemporaryDirectory() as folder:
-        given, found = Path(folder) / "in.npz", Path(folder) / "out.npz"
-        np.savez(given, heights=h, pressure=pressure, hardness=hardness or 0.0, tol=tol)
-        run = subprocess.run([python, WITNESS, code, given, found], capture_output=True, text=True)
-        if run.returncode:
-            return None, run.stderr.strip().splitlines()[-1][:100] if run.stderr.strip() else "failed"
-        with np.load(found) as out:
-            return out["traction"], float(out["seconds"])
+    try:
+        out = ask(python, "half_space.py", code, heights=h, pressure=pressure, hardness=hardness or 0.0, tol=tol)
+    except RuntimeError as fault:
+        return None, str(fault)
+    return out["traction"], float(out["seconds"])
 
 
 def line(code, area, mean, residual, seconds, ratio):

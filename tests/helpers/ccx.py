@@ -40,6 +40,12 @@ def deck(mesh, materials, springs=(), *, step):
     return "\n".join([*lines, *step]) + "\n"
 
 
+def held_step(fixed, count):
+    """The first modes with unknowns (of 3n) that are at rest."""
+    held = [f"{one // 3 + 1},{one % 3 + 1}" for one in fixed]
+    return ["*BOUNDARY", *held, "*STEP", "*FREQUENCY,SOLVER=ARPACK", f"{count}", "*END STEP"]
+
+
 def run(folder, text):
     """Run ccx in `folder` on the input and return what it printed."""
     (folder / "job.inp").write_text(text)

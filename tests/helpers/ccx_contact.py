@@ -15,6 +15,7 @@ from faying.joint.joint import FittedJoint
 from faying.joint.structure import Structure
 from tests.helpers.bars import even
 from tests.helpers.ccx import deck, run
+from tests.helpers.voxels import bolted
 
 K_N, K_T = 2e13, 1e13  # Pa/m, of every face that touches
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0, expansion=1e-5)
@@ -122,6 +123,16 @@ def read(folder, nodes):
     return out
 
 
+def at(axis, place, within=None):
+    """Which nodes lie in a plane, and in a strip about the middle along x."""
+
+    def on(points):
+        there = np.abs(points[:, axis] - place) < 1e-9
+        return there if within is None else there & (np.abs(points[:, 0] - within[0]) < within[1])
+
+    return on
+
+
 def structure(mesh, ends, *, held, friction=None):
     """The plates and bolts of `voxels.bolted`, and the pairs of faces that touch, that of the plates first.
 
@@ -156,6 +167,17 @@ def structure(mesh, ends, *, held, friction=None):
         supports=[Support(face=held)],
     )
     return made, pairs
+
+
+def pried_bolt():
+    """Structure, pairs of faces and loads: an end of the lower plate is held, the far end of the upper one pulled."""
+    mesh = bolted(places=((0.02, 0.02),), length=0.06, kind="hex20")
+    ends = {"lower.end": ("lower", at(0, 0.0)), "upper.end": ("upper", at(0, 0.06))}
+    loads = [
+        faying.Load(f"{force:g} N", forces=[faying.Force("upper.end", force=(0, 0, force))])
+        for force in (400.0, 1200.0)
+    ]
+    return *structure(mesh, ends, held="lower.end"), loads
 
 
 def answers(folder, made, pairs, preload, loads):

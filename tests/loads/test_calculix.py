@@ -8,6 +8,7 @@ import pytest
 import faying
 from faying.materials import MOST_FRICTION
 from tests.helpers import ccx_contact
+from tests.helpers.ccx_contact import at
 from tests.helpers.voxels import bolted
 
 pytestmark = pytest.mark.slow
@@ -15,16 +16,6 @@ pytestmark = pytest.mark.slow
 PRELOAD = 4e3
 SOURCE = "CalculiX 2.20, surface-to-surface contact with linear pressure-overclosure and stick slope, same mesh"
 QUIET = "a bolt whose force changes by little: CalculiX leaves some 0.1 N"
-
-
-def at(axis, place, within=None):
-    """Which nodes lie in a plane, and in a strip about the middle along x."""
-
-    def on(points):
-        there = np.abs(points[:, axis] - place) < 1e-9
-        return there if within is None else there & (np.abs(points[:, 0] - within[0]) < within[1])
-
-    return on
 
 
 def compare(published, folder, what, made, pairs, loads, *, change, moved):
@@ -65,13 +56,7 @@ def compare(published, folder, what, made, pairs, loads, *, change, moved):
 
 def test_a_pried_bolt(tmp_path, published):
     """Two plates that reach beyond their bolt; an end of the lower one is held, the far end of the upper one pulled."""
-    mesh = bolted(places=((0.02, 0.02),), length=0.06, kind="hex20")
-    ends = {"lower.end": ("lower", at(0, 0.0)), "upper.end": ("upper", at(0, 0.06))}
-    made, pairs = ccx_contact.structure(mesh, ends, held="lower.end")
-    loads = [
-        faying.Load(f"{force:g} N", forces=[faying.Force("upper.end", force=(0, 0, force))])
-        for force in (400.0, 1200.0)
-    ]
+    made, pairs, loads = ccx_contact.pried_bolt()
     found = compare(published, tmp_path, "pried bolt", made, pairs, loads, change=0.01, moved=0.02)
     assert found.opened[1, 0] > 0.2
     assert found.superposition[1] > 0.1

@@ -5,17 +5,21 @@ Independent of Faying: closed forms, transfer matrices, a dense active set, and 
 
 import csv
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_trapezoid
+from scipy.integrate import cumulative_trapezoid, trapezoid
 from scipy.linalg import expm
 from scipy.optimize import brentq
 from scipy.special import erfcinv
 
 from tests import test_words
-from tests.reference_problems.axial_section import compliance
+from tests.helpers.shaken import integrated
+from tests.helpers.slips import describing
+from tests.reference_problems.axial_section import compliance, tapped
+from tests.reference_problems.calculix_section import bonded
 
 FOLDER = Path(__file__).parents[2] / "reference-problems"
 PAGES = [FOLDER / "README.md", *sorted(FOLDER.glob("*/README.md"))]
@@ -67,6 +71,35 @@ def shaken_mass():
         "damping ratio": 0.02,
         "rms acceleration": rms,
         "rms displacement": rms / speed**2,
+    } | slider()
+
+
+def slider():
+    """A mass on a spring and a Jenkins element: stochastic averaging, and integration in time."""
+    mass, spring, limit, rest, noise = 7800 * 4e-6, 1e6, 20.0, 0.005, 20.0
+    a = np.geomspace(1e-9, 1e-3, 4000)
+    secant, lost = np.array([describing(spring, limit, one) for one in a]).T
+    speed = np.sqrt((spring + secant) / mass)
+    damping = rest + lost / (2 * np.pi * mass * speed**2 * a**2)
+    spent = cumulative_trapezoid(2 * damping * speed**3 * a, a, initial=0)
+    density = a * np.exp(-4 / noise * spent)
+
+    def mean(values):
+        return trapezoid(values * density, a) / trapezoid(density, a)
+
+    square, cube, power = mean(a**2), mean(speed**3 * a**2), mean(damping * speed**3 * a**2)
+    assert power == pytest.approx(noise / 4, rel=1e-3)  # over the mass: what white noise gives
+    one = {"masses": np.array([mass]), "springs": np.array([spring]), "stiffness": np.array([spring])}
+    x, *_ = integrated(
+        **one, limits=np.array([limit]), density=noise, damping=rest, time=0.5, realisations=400, steps=40
+    )
+    squares = (x**2).mean(axis=(0, 2))
+    assert squares.std() / 20 / squares.mean() / 2 < 0.0015  # standard error of the rms, of 400
+    return {
+        "slider: frequency": np.cbrt(cube / square) / (2 * np.pi),
+        "slider: damping ratio": power / cube,
+        "slider: rms by averaging": np.sqrt(square / 2),
+        "slider: rms by integration in time": np.sqrt(squares.mean()),
     }
 
 
@@ -178,6 +211,37 @@ def discs():
     }
 
 
+BRACKET = {"seat": 16e-3, "hole": 11e-3, "thread": 10e-3, "outer": 32e-3, "base": 40e-3}
+BRACKET |= {"length": 13e-3, "depth": 30e-3, "engaged": 15e-3, "parts": ((210e9, 0.3), (70e9, 0.33)), "size": 5e-4}
+
+
+def bracket():
+    """Cylinders and cone of VDI 2230 Part 1:2015, sections 5.1.1.1 and 5.1.2.1, and finite elements of the section."""
+    d, seat, hole, outer, length = 10e-3, 16e-3, 11e-3, 32e-3, 13e-3
+    nominal, core = (np.pi / 4 * one**2 for one in (d, d - 1.22687 * 1.5e-3))
+    screw = (0.5 * d / nominal + (length + 0.5 * d) / core) / 210e9 + 0.33 * d / nominal / 70e9
+    between, force, shut = tapped(**BRACKET, k_n=1e14, k_t=1e13, screw=screw, preload=20e3, pull=2e3)
+    assert shut == 1.0
+    slope = 2 * (0.348 + 0.013 * np.log(length / seat) + 0.193 * np.log(outer / seat))
+    wide = seat + slope * length
+    assert wide < outer
+    cone = np.log((seat + hole) * (wide - hole) / ((seat - hole) * (wide + hole)))
+    return {
+        "compliance of the screw": screw,
+        "compliance of bracket and base": between,
+        "load factor": between / (screw + between),
+        "force that the screw gains": force - 20e3,
+        "compliance of the bracket by the cone": 2 / (210e9 * np.pi * hole * slope) * cone,
+    }
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
+def test_calculix_finds_the_bonded_bracket(tmp_path):
+    """Halving the elements moves both by 0.2 %, as the stress at the rim of the bracket has no limit."""
+    stiff = tapped(**BRACKET, k_n=1e18, k_t=1e18, screw=1e-9, preload=20e3, pull=0.0)[0]
+    assert bonded(tmp_path, **BRACKET) == pytest.approx(stiff, rel=2e-3)
+
+
 def stub():
     """Half of a flange as a clamped beam with shear, pulled at its middle, held by a bolt, on the bed with its end."""
     E, wide, thick, end, arm, strip, d, half = 200e9, 0.02, 0.006, 0.04, 0.02, 0.0025, 2e-3, 1000.0
@@ -229,6 +293,7 @@ def turns():
 REFERENCES = {
     "1-cone-compliance": discs,
     "2-t-stub-prying": stub,
+    "6-tapped-bracket": bracket,
     "10-tightening-order": turns,
     "3-lap-joint": lap,
     "4-joint-opening": opening,

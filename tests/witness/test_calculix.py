@@ -14,6 +14,7 @@ from faying.decks.matrices import arranged, read_matrices
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
+from faying.joint.assembled_parts import unknowns_of
 from faying.numerics.constraint import constrain
 from faying.numerics.modes import lowest_modes
 from tests.helpers import ccx
@@ -92,13 +93,13 @@ def both(tmp_path, mesh, springs, K, M, materials, count):
     them a mass too.
     """
     held = np.concatenate([mesh.face_nodes("p0.left"), mesh.face_nodes("p1.right")])
-    step = ["*BOUNDARY", *(f"{n + 1},1,3" for n in held), "*STEP", "*FREQUENCY,SOLVER=ARPACK", f"{count}", "*END STEP"]
-    free = np.setdiff1d(np.arange(mesh.unknowns), (3 * held[:, None] + np.arange(3)).ravel())
+    fixed = unknowns_of(held)
+    free = np.setdiff1d(np.arange(mesh.unknowns), fixed)
     ours = lowest_modes(K[free][:, free], M[free][:, free], count, shift_frequency=100.0).frequencies
     if len(mesh.blocks[0][0]) == 8:
         stiff, mass = (A[np.ix_(free, free)] for A in matrices(tmp_path, mesh, materials, springs))
         return ours, np.sqrt(eigh(stiff, mass, eigvals_only=True, subset_by_index=[0, count - 1])) / (2 * np.pi)
-    ccx.run(tmp_path, ccx.deck(mesh, materials, springs, step=step))
+    ccx.run(tmp_path, ccx.deck(mesh, materials, springs, step=ccx.held_step(fixed, count)))
     return ours, np.sort(ccx.frequencies(tmp_path))[:count]
 
 
@@ -140,8 +141,7 @@ def test_bubbles_with_mass_matter_less_on_finer_meshes(tmp_path):
         K, M = assemble(mesh, materials)
         ours, _ = both(tmp_path, mesh, (), K, M, materials, 3)
         held = np.concatenate([mesh.face_nodes("p0.left"), mesh.face_nodes("p1.right")])
-        step = ["*BOUNDARY", *(f"{k + 1},1,3" for k in held), "*STEP", "*FREQUENCY,SOLVER=ARPACK", "3", "*END STEP"]
-        ccx.run(tmp_path, ccx.deck(mesh, materials, step=step))
+        ccx.run(tmp_path, ccx.deck(mesh, materials, step=ccx.held_step(unknowns_of(held), 3)))
         differ.append(np.abs(ours / np.sort(ccx.frequencies(tmp_path))[:3] - 1).max())
     assert differ[0] < 0.02
     assert np.log2(differ[0] / differ[1]) > 1.5

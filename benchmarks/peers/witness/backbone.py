@@ -1,6 +1,5 @@
-"""The witness of benchmarks/backbone.py: tmdsimpy on the matrices of a file, in its own Python.
+"""Frequency and damping against amplitude by tmdsimpy, in its own interpreter: python backbone.py CASE.npz OUT.npz.
 
-Run by benchmarks/backbone.py as `python benchmarks/backbone_tmdsimpy.py CASE.npz OUT.npz` with tmdsimpy on PYTHONPATH.
 Settings of the continuation are those of tmdsimpy's own example of the Brake-Reuss beam.
 """
 

@@ -1,6 +1,6 @@
-"""Solve one contact with another code, in its own interpreter; called by halfspace.py and by the tests.
+"""Solve one contact with another code, in its own interpreter; called by benchmarks and tests.
 
-    python halfspace_witness.py CODE IN.npz OUT.npz
+    python half_space.py CODE IN.npz OUT.npz
 
 IN holds heights (n, n) over a unit square, pressure, E_star 1, hardness (0: elastic) and tol; OUT gets the traction and
 the CPU seconds of the solution alone. CODE: tamaas, contactmechanics, aspher-periodic, aspher-h2.
