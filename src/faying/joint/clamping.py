@@ -19,7 +19,7 @@ from faying.errors import NotConverged
 from faying.fe.elasticity import strain_energy
 from faying.fe.interface import Interface
 from faying.joint.bolted import BoltedStructure
-from faying.joint.load_path import LoadPaths, seat_ring
+from faying.joint.load_path import LEVEL, LoadPaths, seat_ring
 from faying.joint.springs import Springs
 from faying.numerics.modes import Modes
 from faying.numerics.product import product
@@ -148,21 +148,26 @@ def cone_of(structure: BoltedStructure, paths: LoadPaths, index: int) -> float:
     """Return the compliance [m/N] of what a bolt clamps by the deformation cone of VDI 2230.
 
     The parts are as wide as a ring of the area of the joint that is the bolt's own, the mean of its joints, and five
-    seats at most. NaN for a meshed bolt, where its seat is not a ring, and where its joints make no chain of parts from
-    seat to seat.
+    seats at most. A screw clamps what lies between its head and where the thread of the tapped part begins. NaN for a
+    meshed bolt, where its seat is not a ring, and where its joints make no chain of parts from seat to seat.
     """
     fitted, mesh, cuts = structure.fitted_bolts[index], structure.mesh, paths.cuts[index]
-    seat = seat_ring(mesh, fitted) if isinstance(fitted, FittedBolt) else None
-    if seat is None or not cuts:
+    if not isinstance(fitted, FittedBolt) or not cuts:
+        return NAN
+    seat = seat_ring(mesh, fitted)
+    if seat is None:
         return NAN
     ends = [mesh.face_part[face] for face in fitted.bolt.faces]
     names = [*(cut.parts[0] for cut in cuts), cuts[-1].parts[1]]
     if [names[0], names[-1]] != ends or any(one.parts[1] != two.parts[0] for one, two in pairwise(cuts)):
         return NAN
-    depths = [0.0, *(cut.depth for cut in cuts), paths.lines[index].length]
-    lengths, moduli = np.diff(depths).tolist(), [structure.materials[part].E for part in names]
+    depths = np.array([0.0, *(cut.depth for cut in cuts), paths.lines[index].length - fitted.inside])
+    tapped, lengths = fitted.thread is not None, np.diff(depths)
+    if tapped and abs(lengths[-1]) <= LEVEL * depths[-1]:  # threaded up to the joint
+        names, lengths = names[:-1], lengths[:-1]
+    sections = [(length, structure.materials[part].E) for length, part in zip(lengths, names, strict=True)]
     outer = float(np.mean([np.sqrt(4 * cut.area / np.pi + seat[0] ** 2) for cut in cuts]))
     outer = min(outer, WIDEST * seat[1])
     if outer <= seat[0] or min(lengths) <= 0:
         return NAN
-    return cone_compliance(list(zip(lengths, moduli, strict=True)), seat=seat[1], hole=seat[0], outer=outer)
+    return cone_compliance(sections, seat=seat[1], hole=seat[0], outer=outer, tapped=tapped)

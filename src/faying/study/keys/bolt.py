@@ -206,7 +206,8 @@ BOLT: Declared = {
         'inner and outer diameter, for example ["8.4 mm", "16 mm"]',
         "m",
         2,
-        "Inner and outer diameter of the ring that is pressed; the full face where left out and no at is given.",
+        "Inner and outer diameter of the ring that is pressed; that of the washer where left out, or else 1.5 "
+        "diameters around the hole; the full face of a bolt with a nut and neither washer nor at.",
     ),
     "head_mass": Key.quantity("kg", "Mass of the head; of a hexagon head of the diameter where left out."),
     "nut_mass": Key.quantity(
