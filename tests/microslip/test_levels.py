@@ -70,17 +70,33 @@ def test_two_masses_agree_with_harmonic_balance(mode, monkeypatch):
 def test_harmonic_balance_goes_on_from_a_cycle(mode):
     """What it finds does not depend on the cycle that it begins with, and is what the passes find where they settle."""
     model = leveled(chain([1.0, 0.7], [3.0, 2.0], slider(*IWAN)))
-    cycle = model.cycle(0.05, mode)
-    balance, start = model.beyond(cycle, mode)
-    point = balance.follow(start.amplitude, 0.5, known=[start]).points[-1]
-    alone = Epmc(model=model.slip, mode=mode, harmonics=3, samples=levels.SAMPLES).solve(point.amplitude)
-    assert point.amplitude == pytest.approx(0.5, rel=0.01)
-    assert point.frequency == pytest.approx(alone.frequency, rel=1e-5)
-    assert point.damping == pytest.approx(alone.damping, rel=1e-3)
-    level = point.frequency**2 * np.hypot(*point.coordinates[1:3]).max()
-    again = model.cycle(level, mode)
-    assert again.change < 1e-3
-    assert 2 * np.pi * again.frequency == pytest.approx(point.frequency, rel=2e-3)
+    passes = model.passes(0.5, mode)
+    assert passes.converged
+    one, other = (model._balanced(model.passes(level, mode), 0.5, mode) for level in (0.05, 0.2))
+    assert one.level == other.level == 0.5
+    assert one.frequency == pytest.approx(other.frequency, rel=1e-5)
+    assert one.damping == pytest.approx(other.damping, rel=1e-3)
+    assert one.frequency == pytest.approx(passes.frequency, rel=2e-3)
+    assert one.damping == pytest.approx(passes.damping, rel=passes.error)
+
+
+def test_where_passes_do_not_settle_harmonic_balance_has_the_answer(monkeypatch):
+    """The node that moves most has the level that was asked for, and no level has an answer by itself alone."""
+    model = leveled(chain([1.0, 0.7], [3.0, 2.0], slider(*IWAN)))
+    settled = model.at([0.1, 0.5, 2.0], 2)
+    alone = model.passes
+
+    def unsettled(level, number):
+        return replace(alone(level, number), change=1.0 if level > 0.05 else 0.0)
+
+    monkeypatch.setattr(LevelModel, "passes", lambda _, level, number: unsettled(level, number))
+    balanced = model.at([0.1, 0.5, 2.0], 2)
+    assert balanced.frequencies == pytest.approx(settled.frequencies, rel=2e-3)
+    assert np.all(np.abs(balanced.damping / settled.damping - 1) < settled.error + balanced.error)
+    assert np.array_equal(model.at([0.5], 2).damping[0], balanced.damping[1])
+    cycle = model.up_to(0.5, 0)
+    speed = 2 * np.pi * cycle.frequency
+    assert speed**2 * np.hypot(*cycle.motion[1:3]).max() == pytest.approx(0.5, rel=2e-3)
 
 
 def test_harmonics_bring_the_damping_nearer_to_harmonic_balance_with_harmonics(monkeypatch):

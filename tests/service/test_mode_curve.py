@@ -30,7 +30,7 @@ def curves_of(model, count, *, rest, levels):
     root = np.sqrt(np.diag(model.mass))
     out = []
     for mode in range(count):
-        cycles = [cycle for level in levels if np.isfinite((cycle := leveled.cycle(level, mode)).frequency)]
+        cycles = [cycle for level in levels if np.isfinite((cycle := leveled.passes(level, mode)).frequency)]
         out.append(
             ModeCurve(
                 speed=float(model.modes[0][mode]),

@@ -71,7 +71,7 @@ def test_the_leading_mode_has_the_rms_and_the_damping_of_integration_in_time(sta
     speed, damping = 2 * np.pi * found.frequency[1, 0], found.damping[1, 0]
     sigma = found.level[1, 0] / (speed**2 * excited.greatest[0])
     laws = cut_laws(structure, state.preload, [joint.friction for joint in structure.joints], 12)
-    basis = level_basis(structure, state.preload, state.vibration, [laws], [[3 * found.level[1, 0]], [], [], []])
+    basis = level_basis(structure, state.preload, state.vibration, [laws], 3 * found.level[1, 0] * np.eye(4)[0])
     slip = level_model(structure, state.preload, basis, laws).slip
     got = integrated_joints(
         slip,

@@ -267,23 +267,23 @@ def test_a_table_comes_from_a_file(tmp_path):
 
 @pytest.mark.parametrize("kind", ["random", "sine"])
 def test_twins_of_a_square_bar_slip_as_one_mode_along_what_shakes_it(kind):
-    """Along a side, a diagonal and between: the section is alike about all axes, and so is the motion.
+    """Directions that are alike in the section, along sides, diagonals and between, have the same motion.
 
-    1.5 % is what the few elements of the joint make of a direction. With the twins as the solver left them, noise made
-    34 % more of it.
+    A side and a diagonal differ: bent about the diagonal the joint opens and slides at one corner first. With the twins
+    as the solver left them, noise made 34 % more of one of two directions that are alike.
     """
     state = bars(friction=0.3, held=True).structure.solve(preload=2e3, modes=2)
     assert state.frequencies[0] == pytest.approx(state.frequencies[1], rel=1e-6)
     rms, damping = [], []
-    for direction in ((0, 1, 0), (0, 1, 1), (0, 3, -4)):
+    for direction in ((0, 1, 0), (0, 0, 1), (0, 1, 1), (0, 1, -1), (0, 3, -4), (0, 4, 3)):
         given = noise(1000.0, direction=direction)
         if kind == "sine":
             given = faying.Excitation("sweep", sine=[(f, 20.0) for f in BAND], direction=direction, rate=1.0)
         (found,) = faying.vibration(state, [given])
         rms.append(np.linalg.norm(found.acceleration[1, 1, 1:]))
         damping.append(sorted(found.damping[1]))
-    assert rms == pytest.approx([rms[0]] * 3, rel=1.5e-2)
+    assert rms[::2] == pytest.approx(rms[1::2], rel=1e-3)
     least, most = np.array(damping).T
     assert least == pytest.approx(REST, rel=1e-6)
-    assert most == pytest.approx([most[0]] * 3, rel=5e-2)
+    assert most[::2] == pytest.approx(most[1::2], rel=1e-3)
     assert most[0] > (50 if kind == "random" else 1.03) * REST

@@ -32,7 +32,6 @@ SHORTEST = 1 / 16  # of a step, below which the continuation gives up
 TOLERANCE = 1e-7  # of the residual over the elastic forces of the mode
 MAX_NEWTON_STEPS = 25  # Newton steps of a point
 FAST = 0.3  # fall of the residual from one step to the next with which an old derivative is kept
-COARSER = 4  # times fewer instants for the derivative
 END_TOLERANCE = 2e-3  # of the last level: nearer than that a curve has reached its end
 OTHER_MODES = 0.2  # share of other modes in the motion above which it is no longer the mode's
 ALL_SLIDING = 0.98  # share of the limit of friction that slides, above which the joint holds no more
@@ -81,8 +80,9 @@ class Epmc:
         mode: Index of the mode at rest among those of the model, from 0.
         harmonics: Highest harmonic, 1 or more; harmonic 0 is always there.
         samples: Instants of a cycle at which the sliders are looked at.
-        observer: Row (m,) that takes the coordinates to the displacement whose acceleration is the level [m]; None
-            where the level is the modal amplitude.
+        observer: Row (m,) that takes the coordinates to the displacement whose acceleration is the level [m], or rows
+            (n, 3, m) of points, of which the one that moves most gives the level; None where the level is the modal
+            amplitude.
         tolerance: Residual over the elastic forces of the mode at which a point counts as solved.
         most_sliding: Share of the limit of friction that slides at which a curve ends, above 1 for never.
         newton_steps: After so many without an answer the step of the curve is halved.
@@ -120,14 +120,23 @@ class Epmc:
         return float(self.model.modes[0][self.mode])
 
     @cached_property
-    def _row(self) -> Array | None:
-        return None if self.observer is None else self.observer @ self._shapes
+    def _rows(self) -> Array | None:
+        """Of the observer (n, d, m) from the shapes."""
+        if self.observer is None:
+            return None
+        rows = self.observer @ self._shapes
+        return rows if rows.ndim == 3 else rows[None, None]
+
+    def _level(self, amplitude: float, frequency: float, motion: Array) -> float:
+        """What the observer sees of a motion over its amplitude, cosine and sine in rows (2, m)."""
+        if self._rows is None:
+            return amplitude
+        seen = np.linalg.norm(self._rows @ motion.T, axis=(1, 2))
+        return amplitude * frequency**2 * float(seen.max())
 
     def level_of(self, amplitude: float) -> float:
         """Level that a modal amplitude has in the linear limit."""
-        if self._row is None:
-            return amplitude
-        return amplitude * self.linear_frequency**2 * abs(float(self._row[self.mode]))
+        return self._level(amplitude, self.linear_frequency, np.eye(len(self.model.mass))[[self.mode]])
 
     def first(self) -> EpmcPoint:
         """The linear limit as a point to start from: it has no amplitude yet."""
@@ -278,13 +287,12 @@ class Epmc:
         return np.concatenate([left.ravel(), [norm, Y[2, self.mode]]]), forces
 
     def _factored(self, z: Array, amplitude: float) -> Callable[[Array], Array]:
-        """Solver of the equations linearised at z, with the derivative from fewer instants: it only has to lead on."""
+        """Solver of the equations linearised at z."""
         from scipy.linalg import lu_factor, lu_solve
 
         w0, size = self.linear_frequency, len(self.model.mass)
         Y, (rate, zeta) = z[:-2].reshape(-1, size), z[-2:]
-        samples = max(self.samples // COARSER, 4 * self.harmonics + 4)
-        forces = self._modal.forces(amplitude * Y, derivative=True, samples=samples)
+        forces = self._modal.forces(amplitude * Y, derivative=True, samples=self.samples)
         assert forces.stiffness is not None
         n = len(z)
         J = np.zeros((n, n))
@@ -312,14 +320,13 @@ class Epmc:
         Y, (rate, zeta) = z[:-2].reshape(-1, size), z[-2:]
         frequency = float(rate) * self.linear_frequency
         others = np.delete(Y[1:], self.mode, axis=1)
-        level = amplitude if self._row is None else amplitude * frequency**2 * float(np.hypot(*(Y[1:3] @ self._row)))
         joints, cycles = self.model.joints, forces.cycles
         return EpmcPoint(
             amplitude=float(amplitude),
             frequency=frequency,
             damping=float(zeta),
             coordinates=amplitude * Y @ self._shapes.T,
-            level=float(level),
+            level=self._level(float(amplitude), frequency, Y[1:3]),
             other_modes=float(np.sqrt((others**2).sum() + (Y[3:, self.mode] ** 2).sum())),
             slipping=share([cycle.slipping for cycle in cycles], joints),
             open=share([cycle.open for cycle in cycles], joints),

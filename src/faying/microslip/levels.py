@@ -2,8 +2,8 @@
 
 The mode at rest moves the sliders of every joint to and fro. What they dissipate is the damping, and the first harmonic
 of their traction gives secant stiffnesses, under which the mode is found again, until frequency and damping settle.
-The mean opening, the lag and the harmonics up to the third are corrected once in a pass; `backbone` solves them all
-together.
+The mean opening, the lag and the harmonics up to the third are corrected once in a pass. Where that does not settle, at
+edges of joints that open and close, harmonic balance solves them all together, at ten times the cost.
 
 The basis holds the modes at rest, and what their slipping cycles ask for. A cycle of a mode that slips leaves forces in
 the full equations. The motion under them, of a joint that sticks, is the flexibility that the modes at rest lack. One
@@ -61,7 +61,9 @@ MAX_DAMPING = 1.0  # a mode that is damped by as much does not vibrate: it has n
 MAX_OTHER_ENERGY = 10.0  # of the first harmonic, in what corrects it: more of it is no cycle of this mode
 BALANCE = 1e-5  # residual over the elastic forces of a mode, and twice the error of its damping ratio
 BALANCE_STEPS = 12  # of Newton: what has an answer takes 5 to 10
-MIN_SHARE = 1 / 64  # of a change of the secant stiffnesses, below which the mode has no answer at a level
+MIN_SHARE = 1 / 64  # of a change of the secant stiffnesses, below which the passes have no answer at a level
+UNSETTLED = 0.01  # change of the damping in the last pass above which harmonic balance takes over
+MOST_DOWN = 8  # halves of a level that has not settled, of which one has to settle for a balance to begin with
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,15 +89,17 @@ class LevelCycle:
     """The cycle of one mode at one level.
 
     Args:
+        level: greatest acceleration of a node [m/s2].
         frequency: [Hz]; NaN, as damping and error, where there is no answer.
         damping: ratio of slip [-].
         error: of the damping, over it [-].
-        change: of the damping in the last pass, over it [-]: a part of the error.
-        motion: Fourier coefficients of the coordinates (1 + 2H, m) [m] in the last pass.
+        change: of the damping in the last pass, or what a balance leaves of it, over it [-]: a part of the error.
+        motion: Fourier coefficients of the coordinates (1 + 2H, m) [m].
         traction: those of the tractions of each joint (1 + 2H, q, 3) [Pa] under that motion.
         at_rest: whether its joints soften so little that it keeps its motion at rest.
     """
 
+    level: float
     frequency: float
     damping: float
     error: float
@@ -103,6 +107,11 @@ class LevelCycle:
     motion: Array
     traction: tuple[Array, ...]
     at_rest: bool
+
+    @property
+    def converged(self) -> bool:
+        """Whether there is an answer, which passes no longer change."""
+        return bool(np.isfinite(self.frequency)) and self.change < UNSETTLED
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,15 +143,36 @@ class LevelModel:
 
     def at(self, levels: Sequence[float], count: int) -> AtLevels:
         """The lowest elastic modes, so many, at each level: acceleration [m/s2] of the point that moves most."""
-        found = [[self.cycle(level, k) for k in range(count)] for level in levels]
+        found = [[(level, self.up_to(level, k)) for k in range(count)] for level in levels]
         frequency, damping, error = (
-            np.array([[getattr(one, name) for one in row] for row in found])
+            np.array([[getattr(one, name) if one.level == level else np.nan for level, one in row] for row in found])
             for name in ("frequency", "damping", "error")
         )
         return AtLevels(frequencies=frequency, damping=damping, error=error)
 
-    def cycle(self, level: float, number: int) -> LevelCycle:
-        """One elastic mode, counted from 0, at one level [m/s2]."""
+    def up_to(self, level: float, number: int, near: LevelCycle | None = None) -> LevelCycle:
+        """One elastic mode, counted from 0, at the greatest level with an answer up to the one given [m/s2].
+
+        Args:
+            level, number: the level and the mode.
+            near: an answer below this level, with which a balance begins; looked for where left out.
+
+        Returns:
+            Of passes that settle, harmonic balance and passes that do not settle, in this order, the one that goes
+            farthest; without frequency where there is none.
+        """
+        tried = [self.passes(level, number)]
+        while near is None and not tried[-1].converged and len(tried) <= MOST_DOWN:
+            tried.append(self.passes(level * HALF ** len(tried), number))
+        if tried[0].converged:
+            return tried[0]
+        near = near or (tried[-1] if tried[-1].converged else None)
+        found = [self._balanced(near, level, number)] if near else []
+        found += [one for one in tried if np.isfinite(one.frequency)]
+        return max(found, key=lambda one: one.level, default=tried[0])
+
+    def passes(self, level: float, number: int) -> LevelCycle:
+        """One elastic mode at one level, as far as the passes lead."""
         speeds, shapes = self.modes
         number += self.rigid
         speed, shape = float(speeds[number]), shapes[:, number]
@@ -180,10 +210,9 @@ class LevelModel:
             speed, shape = float(softened[0][like]), softened[1][:, like]
             if abs(speed**2 - squared) < TOLERANCE * squared and change < 10 * TOLERANCE:
                 break
-        lower = max(1 - (speed / float(speeds[number])) ** 2, 0.0)
-        shape_error = ERROR_OF_SHAPE * float(np.sqrt(lower))
-        error = change + shape_error + ERROR_OF_NEAR_MODE * near + ERROR_OF_LAG * damping
+        error = change + self._shape_error(speed, number) + ERROR_OF_NEAR_MODE * near + ERROR_OF_LAG * damping
         return LevelCycle(
+            level=level,
             frequency=speed / (2 * np.pi),
             damping=damping,
             error=min(error, 1.0) if np.isfinite(speed) else np.nan,
@@ -193,26 +222,42 @@ class LevelModel:
             at_rest=at_rest,
         )
 
-    def beyond(self, last: LevelCycle, number: int) -> tuple[Epmc, EpmcPoint]:
-        """The curve of a mode by harmonic balance, and a cycle as a point of it, to go on where passes do not settle.
+    def _shape_error(self, speed: float, number: int) -> float:
+        """What the basis may miss of a damping, over it, where the joints have moved a mode to an angular frequency."""
+        return ERROR_OF_SHAPE * float(np.sqrt(abs(1 - (speed / float(self.modes[0][number])) ** 2)))
 
-        Newton follows edges of joints that open and close, at ten times the cost of a level.
-        """
+    def _balanced(self, start: LevelCycle, level: float, number: int) -> LevelCycle:
+        """Follow a mode from an answer to a greater level by harmonic balance, as far as it gets."""
         epmc = Epmc(
             model=self.slip,
             mode=self.rigid + number,
             harmonics=HARMONICS,
             samples=SAMPLES,
+            observer=self.vectors.reshape(-1, 3, self.vectors.shape[1]),
             tolerance=BALANCE,
             newton_steps=BALANCE_STEPS,
         )
-        amplitude = float(np.linalg.norm(last.motion[1]))
-        return epmc, EpmcPoint(
-            amplitude=amplitude,
-            frequency=2 * np.pi * last.frequency,
+        first = EpmcPoint(
+            amplitude=float(np.linalg.norm(start.motion[1:3])),
+            frequency=2 * np.pi * start.frequency,
+            damping=start.damping,
+            coordinates=start.motion,
+            level=start.level,
+        )
+        curve = epmc.follow(start.level, level, known=[first])
+        if len(curve.points) == 1:
+            return start
+        last = curve.points[-1]
+        change = BALANCE / max(2 * last.damping, BALANCE)
+        return LevelCycle(
+            level=level if curve.code == "amplitude" else last.level,
+            frequency=last.frequency / (2 * np.pi),
             damping=last.damping,
-            coordinates=last.motion,
-            level=amplitude,
+            error=min(change + self._shape_error(last.frequency, self.rigid + number), 1.0),
+            change=change,
+            motion=last.coordinates,
+            traction=last.traction,
+            at_rest=False,
         )
 
     def _towards(
@@ -357,7 +402,7 @@ def level_basis(
     preload: PreloadState,
     found: Vibration,
     laws: Sequence[Sequence[Microslip]],
-    levels: Sequence[Sequence[float]],
+    levels: Array,
 ) -> Span:
     """Make the basis of the lowest elastic modes.
 
@@ -366,9 +411,9 @@ def level_basis(
         preload: its equilibrium under the bolts.
         found: its modes at rest, at least one elastic one for each of `levels` to full accuracy.
         laws: of the joints, one set after another that the basis is made for, the least friction first. It slips most:
-            the next set is for modes that have no answer at the greatest level under it.
-        levels: accelerations [m/s2] of each elastic mode from the lowest on, of which it takes the greatest at which it
-            has an answer; none for a mode that is not looked at.
+            the next set is for modes that have no answer at their level under it.
+        levels: acceleration [m/s2] of each elastic mode from the lowest on (m,), the greatest that is looked at; 0 for
+            a mode that is not looked at.
 
     Returns:
         Vectors orthonormal with the mass, rigid motions first, and the stiffness of the parts projected on them.
@@ -376,16 +421,17 @@ def level_basis(
     stiffness, mass = structure.dynamic_matrices
     basis = Span(mass, stiffness, found.modes.shapes[:, : structure.rigid_count + len(levels)])
     at_rest = Shifted(stiffness=found.stiffness, mass=mass, shift=found.modes.shift)
-    left = [k for k, own in enumerate(levels) if len(own)]
+    left = [k for k, level in enumerate(levels) if level > 0]
     for own in laws:
         wanted = left
         for number in range(ROUNDS):
             model = level_model(structure, preload, basis, own)
-            every = {k: _greatest(model, levels[k], k) for k in wanted}
+            every = {k: model.up_to(levels[k], k) for k in wanted}
+            answered = {k: one for k, one in every.items() if np.isfinite(one.frequency)}
             if number == 0:
-                left = [k for k, one in every.items() if one is None or one[0] < max(levels[k])]
+                left = [k for k in every if k not in answered or every[k].level < levels[k]]
             # the basis has the modes at rest
-            cycles = {k: one[1] for k, one in every.items() if one is not None and not one[1].at_rest}
+            cycles = {k: one for k, one in answered.items() if not one.at_rest}
             if not cycles:
                 break
             forces = np.concatenate([_left(structure, model, cycle) for cycle in cycles.values()], axis=1)
@@ -398,12 +444,6 @@ def level_basis(
             if not wanted or not basis.add(moved[:, size > SMALL], least=MIN_NEW_SHARE):
                 break
     return basis
-
-
-def _greatest(model: LevelModel, levels: Sequence[float], number: int) -> tuple[float, LevelCycle] | None:
-    """The greatest level at which a mode has an answer, and its cycle there."""
-    cycles = ((level, model.cycle(level, number)) for level in sorted(levels, reverse=True))
-    return next((one for one in cycles if np.isfinite(one[1].frequency)), None)
 
 
 def _left(structure: BoltedStructure, model: LevelModel, cycle: LevelCycle) -> Array:

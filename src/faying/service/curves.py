@@ -10,22 +10,20 @@ from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
-from faying.microslip.epmc import EpmcPoint
 from faying.microslip.levels import SPRINGS, LevelCycle, LevelModel, level_basis, level_model
 from faying.microslip.microslip import Microslip
-from faying.service.mode_curve import ModeCurve
+from faying.service.mode_curve import LEAST_SLIP, ModeCurve
 from faying.typing import Array
 
 LOWEST = 0.02  # of the amplitude that a mode would have with the least damping at rest: where its curve begins
 STEP = 2.0  # from level to level: between them a curve of two plateaus is smooth to 1 %
 STEP_AT_ENDS = 4.0  # the same at the ends of friction, where 3 % do
-STEEP = 2.0  # slip that grows by more than this power of a step asks for smaller ones, as does a level without answer
+BEND = 0.5  # change of the power of slip from step to step that asks for smaller ones: between them it is right to 5 %
+LONGER = 1.5  # power of a step that the next one may be
 FINEST_STEP = 1.15  # the smallest: two blocks that begin to slide as a whole have 90 times the damping over a step of 2
 SLIGHT = 0.1  # of the damping at rest: a curve that begins with more slip goes down first, in steps of
 DOWN = 8.0
-UNSETTLED = 0.01  # change of the damping in the last pass above which no balance begins with a cycle
 MOST_DOWN = 6  # at most so many of them
-BASIS = (1.0, 0.25, 0.0625)  # of the level with the greatest damping at rest, at one of which the basis is made
 NOTHING = 1e-3  # of the level of the mode that is shaken most: modes below it are taken as at rest
 
 
@@ -85,9 +83,8 @@ def curve_sets(
     )
     scale = greatest * speeds**2
     wanted = expected * scale > NOTHING * (expected * scale).max(initial=0.0)
-    asked = wanted & (likely > 0)
-    levels = [(x * np.array(BASIS)).tolist() if one else [] for x, one in zip(likely * scale, asked, strict=True)]
-    basis = level_basis(structure, preload, found, list(laws.values())[:2], levels)
+    # made at the levels with the greatest damping at rest
+    basis = level_basis(structure, preload, found, list(laws.values())[:2], np.where(wanted, likely * scale, 0.0))
     laws[FRICTION[1]] = laws_at(structure, preload, FRICTION[1], SPRINGS)
     moved = moved_by_loss(structure, found)
     sets, ended = {}, set()
@@ -132,61 +129,45 @@ def _march(
     step: from level to level.
     """
     points: list[tuple[float, float, float]] = []
+    longest = step
     last: LevelCycle | None = None
     level = LOWEST * needs(curve) * scale
-    cycle = model.cycle(level, mode)
+    cycle = model.passes(level, mode)
     for _ in range(MOST_DOWN):
         if cycle.damping < SLIGHT * curve.rest or level == 0:  # False where there is no answer
             break
         level /= DOWN
-        cycle = model.cycle(level, mode)
+        cycle = model.passes(level, mode)
     while level > 0:
-        steep = points and cycle.damping > max(SLIGHT * curve.rest, points[-1][2] * step**STEEP)
-        if (steep or (points and not np.isfinite(cycle.frequency))) and step > FINEST_STEP:
+        if not np.isfinite(cycle.frequency):
+            return curve, True
+        amplitude = float(np.linalg.norm(cycle.motion[1:3]))
+        point = (amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping)
+        bends = cycle.damping > SLIGHT * curve.rest and _bends([*points, point])
+        if (bends or cycle.level < level) and step > FINEST_STEP:
             level /= step
             step = np.sqrt(step)
-        elif not np.isfinite(cycle.frequency):
-            return _balanced(model, mode, last, curve, needs, moved)
         else:
-            amplitude = float(np.linalg.norm(cycle.motion[1]))
+            last = cycle
             if not points or amplitude > points[-1][0]:  # else its shape changed by more than the level
-                points.append((amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping))
-                curve = _through(points, curve)
-                last = cycle if cycle.change < UNSETTLED else last
+                points.append(point)
+                amplitudes, speeds, slips = np.array(points).T
+                curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
                 if amplitude >= needs(curve):
                     break
+            if cycle.level < level:
+                return curve, True
+            step = min(longest, step**LONGER)
         level *= step
-        cycle = model.cycle(level, mode)
+        cycle = model.up_to(level, mode, last)
     return curve, False
 
 
-def _balanced(
-    model: LevelModel,
-    mode: int,
-    last: LevelCycle | None,
-    curve: ModeCurve,
-    needs: Callable[[ModeCurve], float],
-    moved: float,
-) -> tuple[ModeCurve, bool]:
-    """Go on from the last cycle that settled, by harmonic balance; whether the curve ends before what is needed."""
-    if last is None:
-        return curve, True
-    epmc, start = model.beyond(last, mode)
-    rows = zip(curve.amplitudes, curve.speeds, curve.slips, strict=True)
-    points = [row for row in rows if row[0] <= start.amplitude]
-    grown = [curve]
-
-    def take(point: EpmcPoint) -> str | None:
-        points.append((point.amplitude, point.frequency * moved, point.damping))
-        grown[0] = _through(points, curve)
-        return "all that is needed" if point.amplitude >= needs(grown[0]) else None
-
-    found = epmc.follow(start.amplitude, needs(curve), known=[start], keep=take)
-    farther = points[-1][0] > curve.amplitudes[-1]
-    return grown[0] if farther else curve, found.code not in ("basis", "amplitude")
-
-
-def _through(points: Sequence[tuple[float, float, float]], curve: ModeCurve) -> ModeCurve:
-    """A curve through amplitudes, speeds and ratios of slip."""
-    amplitudes, speeds, slips = np.array(points).T
-    return replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
+def _bends(points: Sequence[tuple[float, float, float]]) -> bool:
+    """Whether the power of the amplitude with which slip goes changes much at the last point but one."""
+    amplitudes, _, slips = np.log(np.maximum(np.array(points[-3:]).T, [[0.0], [0.0], [LEAST_SLIP]]))
+    along = np.diff(amplitudes)
+    if np.any(along <= 0):
+        return False
+    # below the first point slip is in proportion to the amplitude
+    return bool(np.ptp(np.concatenate([[1.0], np.diff(slips) / along])[-2:]) > BEND)
