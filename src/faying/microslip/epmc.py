@@ -32,6 +32,7 @@ SHORTEST = 1 / 16  # of a step, below which the continuation gives up
 TOLERANCE = 1e-7  # of the residual over the elastic forces of the mode
 MAX_NEWTON_STEPS = 25  # Newton steps of a point
 FAST = 0.3  # fall of the residual from one step to the next with which an old derivative is kept
+LEADING = 32  # instants for the derivative: with 16 steps stall where edges open and close
 END_TOLERANCE = 2e-3  # of the last level: nearer than that a curve has reached its end
 OTHER_MODES = 0.2  # share of other modes in the motion above which it is no longer the mode's
 ALL_SLIDING = 0.98  # share of the limit of friction that slides, above which the joint holds no more
@@ -287,12 +288,13 @@ class Epmc:
         return np.concatenate([left.ravel(), [norm, Y[2, self.mode]]]), forces
 
     def _factored(self, z: Array, amplitude: float) -> Callable[[Array], Array]:
-        """Solver of the equations linearised at z."""
+        """Solver of the equations linearised at z, with the derivative from fewer instants: it only has to lead on."""
         from scipy.linalg import lu_factor, lu_solve
 
         w0, size = self.linear_frequency, len(self.model.mass)
         Y, (rate, zeta) = z[:-2].reshape(-1, size), z[-2:]
-        forces = self._modal.forces(amplitude * Y, derivative=True, samples=self.samples)
+        samples = min(max(LEADING, 4 * self.harmonics + 4), self.samples)
+        forces = self._modal.forces(amplitude * Y, derivative=True, samples=samples)
         assert forces.stiffness is not None
         n = len(z)
         J = np.zeros((n, n))
