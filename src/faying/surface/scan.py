@@ -8,8 +8,9 @@ import numpy as np
 from faying.checks import shown, whole
 from faying.errors import FayingError, InputError
 from faying.style import Summary
+from faying.surface.areal import ArealParameters
 from faying.surface.figure import overview_of
-from faying.surface.form import filled, find_spikes, levelled
+from faying.surface.form import filled, find_spikes, levelled, prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.fractal_fit import FractalFit
 from faying.surface.heights import AreaHeights, LineHeights
@@ -167,6 +168,24 @@ class Scan(Heights, AreaHeights):
     Raises:
         InputError: for heights that are not two-dimensional or not finite, and spacings that are not positive.
     """
+
+    def areal(self, *, degree: int = 1, spikes: bool = True) -> ArealParameters:
+        """Return the areal parameters of ISO 25178-2, levelled and without a filter.
+
+        Args:
+            degree: of the polynomial that levels the heights, 0 to 8.
+            spikes: whether single outlying points are taken out.
+
+        Returns:
+            Heights, slopes, bearing curve, volumes and autocorrelation.
+
+        Raises:
+            InputError: for another degree, and for heights that carry no statistic.
+
+        Source:
+            ISO 25178-2:2021.
+        """
+        return ArealParameters.of(prepared(self, degree=degree, spikes=spikes))
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Size, points, spacing, Sq, missing points and source."""

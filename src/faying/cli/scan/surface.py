@@ -6,6 +6,7 @@ from typing import Any
 import click
 
 from faying.cli.options import NamedPath
+from faying.errors import InputError
 from faying.output.terminal import folded, indented
 from faying.surface.estimators.table import METHODS
 from faying.text import finite, json_text
@@ -24,6 +25,7 @@ from faying.units import lengths, show
 @click.option("--size", metavar="LENGTHS", help='Size of a scan whose file states none, for example "4 mm x 3 mm".')
 @click.option("--spacing", metavar="LENGTHS", help='Distance of its points, in place of --size, for example "5 um".')
 @click.option("--channel", help="Name of the map of heights, where the file holds several.")
+@click.option("--iso", is_flag=True, help="All areal parameters of ISO 25178-2 that Faying has.")
 @click.option("--self-test", "test", is_flag=True, help="Correct for bias by synthetic surfaces made like this one.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--plot", type=NamedPath(dir_okay=False), help="Write a figure (png, pdf, svg).")
@@ -34,6 +36,7 @@ def command(
     method: str,
     degree: int,
     keep_spikes: bool,
+    iso: bool,
     test: bool,
     as_json: bool,
     plot: str | None,
@@ -44,6 +47,7 @@ def command(
     from faying.surface.form import prepared
     from faying.surface.fractal import fit_all
     from faying.surface.roughness import roughness
+    from faying.surface.scan import Scan
 
     sides = {"size": size, "spacing": spacing}
     sizes: dict[str, Any] = {name: lengths(text, name=f"--{name}") for name, text in sides.items() if text}
@@ -52,11 +56,18 @@ def command(
     methods = tuple(METHODS) if method == "all" else (method,)
     fits = fit_all(scan, methods=methods, self_test=test, degree=degree, spikes=not keep_spikes)
     document = describe(scan, ready, roughness(ready), fits)
+    if iso:
+        if not isinstance(scan, Scan):
+            raise InputError("--iso is for scans; the parameters of a profile (ISO 21920-2) stand without it")
+        areal = scan.areal(degree=degree, spikes=not keep_spikes)
+        document["areal"] = dict(finite(asdict(areal)))
     if plot:
         from faying.surface.figure import overview
 
         overview(scan, ready, fits, plot)
     click.echo(json_text(document) if as_json else table(document))
+    if iso and not as_json:
+        click.echo(f"\n{folded(str(areal))}")
 
 
 def describe(scan: Any, ready: Any, rough: Any, fits: Any) -> dict[str, Any]:

@@ -1,0 +1,153 @@
+"""The areal parameters of ISO 25178-2: heights, slopes, bearing curve, volumes, autocorrelation."""
+
+from dataclasses import dataclass, fields
+from typing import final
+
+import numpy as np
+
+from faying.style import Summary
+from faying.surface.form import Prepared
+from faying.surface.roughness import roughness
+from faying.typing import Array
+from faying.units import show
+
+CORE = 0.4  # share of the area under the secant of the core (ISO 25178-2, clause on Sk)
+PEAK, VALLEY = 0.1, 0.8  # material ratios that part peaks, core and valleys in the volumes (the standard's defaults)
+EXTREME, MIDDLE = 0.025, 0.5  # material ratios of Sxp (the standard's defaults)
+DECAY = 0.2  # of the autocorrelation, at which Sal and Str are read (the standard's default)
+LEAST_OVERLAP = 0.5  # of each side, to which shifts reach: beyond it few pairs of points are left
+
+
+@final
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ArealParameters(Summary):
+    """Numbers of a levelled scan without a filter, by their names in ISO 25178-2.
+
+    Args:
+        Sq, Ssk, Sku, Sp, Sv, Sz, Sa: rms height [m], skewness and kurtosis [-], highest peak above and deepest pit
+            below the mean, their sum, mean absolute height [m].
+        Sdq, Sdr: rms gradient, developed over projected area less 1 [-].
+        Sk, Spk, Svk: heights of core, reduced peaks and reduced valleys [m].
+        Smr1, Smr2: material ratios [-] where the core begins and ends.
+        Sxp: from the height at a material ratio of 2.5 % down to that at 50 % [m].
+        Vmp, Vmc, Vvc, Vvv: volumes per area [m] of material in peaks (above 10 %) and core (10 to 80 %), of voids in
+            core and valleys (below 80 %).
+        Sal: least distance [m] at which the autocorrelation falls to 0.2.
+        Str: that over the greatest one [-]; NaN where it does not fall so far within half of the scan.
+
+    Source:
+        ISO 25178-2:2021.
+    """
+
+    Sq: float
+    Ssk: float
+    Sku: float
+    Sp: float
+    Sv: float
+    Sz: float
+    Sa: float
+    Sdq: float
+    Sdr: float
+    Sk: float
+    Spk: float
+    Svk: float
+    Smr1: float
+    Smr2: float
+    Sxp: float
+    Vmp: float
+    Vmc: float
+    Vvc: float
+    Vvv: float
+    Sal: float
+    Str: float
+
+    @classmethod
+    def of(cls, ready: Prepared) -> "ArealParameters":
+        """Those of a scan that is levelled; points that were filled in count for Sal and Str alone."""
+        rough, heights = roughness(ready), ready.scan.heights
+        known = heights[ready.known]
+        falling = np.sort(known - known.mean())[::-1]
+        sal, longest = _decay(heights - heights.mean(), ready.scan.spacing)
+        rest = {"Sp": float(falling[0]), "Sv": float(-falling[-1])}
+        same = {one.name: getattr(rough, one.name) for one in fields(cls) if hasattr(type(rough), one.name)}
+        return cls(**same, **rest, **_bearing(falling), Sal=sal, Str=sal / longest)
+
+    def summary(self) -> tuple[str, dict[str, str]]:
+        """All numbers, by the groups of the standard."""
+        lengths = {"Sq", "Sa", "Sp", "Sv", "Sz", "Sk", "Spk", "Svk", "Sxp", "Vmp", "Vmc", "Vvc", "Vvv", "Sal"}
+
+        def text(value: float, length: bool) -> str:
+            return "-" if np.isnan(value) else show(value, "m") if length else f"{value:.4g}"
+
+        def row(*names: str) -> str:
+            return ", ".join(f"{name} {text(getattr(self, name), name in lengths)}" for name in names)
+
+        return "ISO 25178-2 without a filter", {
+            "height": row("Sq", "Sa", "Sp", "Sv", "Sz", "Ssk", "Sku"),
+            "hybrid": row("Sdq", "Sdr"),
+            "bearing": row("Sk", "Spk", "Svk", "Smr1", "Smr2", "Sxp"),
+            "volume": row("Vmp", "Vmc", "Vvc", "Vvv"),
+            "spatial": row("Sal", "Str"),
+        }
+
+
+def _bearing(falling: Array) -> dict[str, float]:
+    """Numbers of the bearing curve, from the heights (n,) [m] in falling order, each of which has 1/n of the area."""
+    n = len(falling)
+    ratio = (np.arange(n) + 0.5) / n
+    width = max(round(CORE * n), 1) if n > 1 else 0
+    drops = falling[: n - width] - falling[width:]
+    # of secants that are equally flat the middle one
+    start = int(np.median(np.flatnonzero(drops <= drops.min() * (1 + 1e-12))))
+    core = float(drops[start]) * n / max(width, 1)
+    top = float(falling[start] + core * ratio[start])
+    bottom = top - core
+    above, below = np.maximum(falling - top, 0.0), np.maximum(bottom - falling, 0.0)
+    peaks, valleys = float(np.mean(falling > top)), float(np.mean(falling < bottom))
+
+    def height(share: float) -> float:
+        return float(np.interp(share, ratio, falling))
+
+    def material(share: float) -> float:
+        return float(np.maximum(falling - height(share), 0.0).mean())
+
+    def void(share: float) -> float:
+        return float(np.maximum(height(share) - falling, 0.0).mean())
+
+    return {
+        "Sk": core,
+        "Spk": 2 * float(above.mean()) / peaks if peaks else 0.0,  # a triangle of the same area
+        "Svk": 2 * float(below.mean()) / valleys if valleys else 0.0,
+        "Smr1": peaks,
+        "Smr2": 1 - valleys,
+        "Sxp": height(EXTREME) - height(MIDDLE),
+        "Vmp": material(PEAK),
+        "Vmc": material(VALLEY) - material(PEAK),
+        "Vvc": void(PEAK) - void(VALLEY),
+        "Vvv": void(VALLEY),
+    }
+
+
+def _decay(z: Array, spacing: tuple[float, float]) -> tuple[float, float]:
+    """Least and greatest distance [m] at which the autocorrelation of z (ny, nx), of mean 0, falls to `DECAY`.
+
+    Of every shift, over the points that overlap. Around the centre; NaN where it does not fall so far.
+    """
+    from contourpy import contour_generator
+    from scipy.fft import fftshift, irfft2, next_fast_len, rfft2
+
+    shape = [next_fast_len(2 * n, real=True) for n in z.shape]
+    reach = [int(LEAST_OVERLAP * n) for n in z.shape]
+    power = np.abs(rfft2(z, shape)) ** 2
+    pairs = [n - np.abs(np.arange(-r, r + 1)) for n, r in zip(z.shape, reach, strict=True)]
+    middle = tuple(slice(n // 2 - r, n // 2 + r + 1) for n, r in zip(shape, reach, strict=True))
+    along = fftshift(irfft2(power, shape))[middle] / np.multiply.outer(*pairs)
+    y, x = (step * np.arange(-r, r + 1) for r, step in zip(reach, spacing[::-1], strict=True))
+    lines = contour_generator(x, y, along / along[reach[0], reach[1]]).lines(DECAY)
+    radii = [np.hypot(*np.asarray(line).T) for line in lines]
+    if not radii:
+        return np.nan, np.nan
+    nearest = int(np.argmin([one.min() for one in radii]))
+    line = np.asarray(lines[nearest])
+    closed = np.array_equal(line[0], line[-1])
+    return float(radii[nearest].min()), float(radii[nearest].max()) if closed else np.nan
