@@ -1,4 +1,4 @@
-"""Write beam.step: two halves in a lap on three bolts, the Brake-Reuss beam of half height. Dimensions [mm]: README.md."""
+"""Write beam.step: two halves in a lap on three bolts, the half-height Brake-Reuss beam. Dimensions: README.md."""
 
 from pathlib import Path
 from typing import Any
