@@ -13,7 +13,6 @@ from faying.bolt.dowel import ORDER, pin_stiffness
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
-from faying.fe.sides import sides_on
 from faying.geometry.geometry import mesh_step
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
@@ -22,6 +21,7 @@ from faying.numerics.modes import lowest_modes
 from faying.numerics.solve import factorise
 from tests.geometry.test_geometry import at, named, step
 from tests.helpers.bars import even
+from tests.helpers.sides import sides_on
 
 STEEL = faying.CATALOGUE["45 steel"]
 D, DEEP = 8e-3, 10e-3

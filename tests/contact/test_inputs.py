@@ -41,7 +41,6 @@ def test_summits_follow_from_the_moments() -> None:
     assert s.summit_density == pytest.approx(1e10 / (6 * pi * sqrt(3)))
     assert s.summit_radius == pytest.approx(0.375 * sqrt(pi / 1e6))
     assert s.summit_deviation == pytest.approx(sqrt((1 - 0.8968 / 4) * 4e-14))
-    assert s.summit_plane == pytest.approx(4 * sqrt(4e-14 / (4 * pi)))
     # c G^(2D-4) is the same: c = 1 for Yan and Komvopoulos, 1/ln(gamma) for Majumdar and Bhushan
     assert s.G_majumdar_bhushan**0.8 / log(1.5) == pytest.approx(s.G**0.8)
 

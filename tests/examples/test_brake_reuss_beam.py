@@ -43,10 +43,10 @@ def test_without_the_measurement_it_says_where_to_get_it(folder):
 
 def test_the_joint_has_the_area_of_the_published_mesh(folder):
     """2921 mm2 in the reduced published mesh, whose holes are polygons: within 0.3 %."""
-    from faying.geometry.cad import read_step
+    from faying.geometry.cad import read_parts
 
     areas = {
-        face.name: face.mass for solid in read_step(folder / "brake-reuss-beam.step").solids for face in solid.faces
+        face.name: face.mass for solid in read_parts(folder / "brake-reuss-beam.step").solids for face in solid.faces
     }
     assert areas["left.joint"] == pytest.approx(2921.0, rel=0.003)
     assert areas["right.joint"] == pytest.approx(areas["left.joint"], rel=1e-9)

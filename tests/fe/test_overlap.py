@@ -10,13 +10,13 @@ from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
 from faying.fe.overlap import overlap
-from faying.fe.sides import sides_on
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import SOLID_KINDS, block, row
 from tests.helpers.loads import bolt_load
+from tests.helpers.sides import sides_on
 
 STEEL = faying.Material(name="steel", E=200e9, nu=0.3, density=7800.0)
 SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)

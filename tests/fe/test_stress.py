@@ -8,10 +8,10 @@ import faying
 from faying.fe.elasticity import assemble
 from faying.fe.mesh import Mesh
 from faying.fe.nodal_forces import pressure_forces
-from faying.fe.sides import sides_on
 from faying.fe.stress import part_stresses, von_mises
 from faying.numerics.constraint import constrain
 from tests.helpers.boxes import SOLID_KINDS, block
+from tests.helpers.sides import sides_on
 
 STEEL = faying.Material(name="steel", E=210e9, nu=0.3, density=7800.0)
 

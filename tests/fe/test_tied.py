@@ -9,10 +9,10 @@ from scipy.linalg import eigh
 from faying.fe.bonded import bonded_mesh, tie_stiffness
 from faying.fe.elasticity import assemble, rigid_motions
 from faying.fe.mesh import Mesh
-from faying.fe.sides import sides_on
 from faying.materials import CATALOGUE
 from tests.fe.test_overlap import PAIRS, ring
 from tests.helpers.boxes import row
+from tests.helpers.sides import sides_on
 
 STEEL = CATALOGUE["S355"]
 FACES = ("p0.right", "p1.left")

@@ -4,7 +4,7 @@ import numpy as np
 
 from faying.fe.elements import KINDS
 from faying.fe.mesh import Mesh
-from faying.fe.sides import sides_on
+from tests.helpers.sides import sides_on
 
 SPLIT = {  # corners of a cube, as VTK numbers them, to corners of the elements that fill it
     "hex": [(0, 1, 2, 3, 4, 5, 6, 7)],

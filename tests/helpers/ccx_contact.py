@@ -9,12 +9,12 @@ import faying
 from faying.case.acting import acting
 from faying.fe.elements import FACES, SOLIDS
 from faying.fe.interface import join
-from faying.fe.sides import sides_on
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.structure import Structure
 from tests.helpers.bars import even
 from tests.helpers.ccx import deck, run
+from tests.helpers.sides import sides_on
 from tests.helpers.voxels import bolted
 
 K_N, K_T = 2e13, 1e13  # Pa/m, of every face that touches

@@ -5,11 +5,11 @@ import numpy as np
 import faying
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
-from faying.fe.sides import sides_on
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from tests.helpers.boxes import block
+from tests.helpers.sides import sides_on
 
 STEEL = faying.CATALOGUE["45 steel"]
 LAW = faying.JK(D=2.39, G=1.53e-10, pair=faying.ContactPair(STEEL, STEEL), scan_area=16e-6)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from faying.fe.mesh import Mesh
-from faying.fe.sides import sides_on
 from tests.helpers.boxes import block
+from tests.helpers.sides import sides_on
 
 
 def disc(radii, turns, heights):

@@ -3,8 +3,8 @@
 import numpy as np
 
 from faying.fe.mesh import Mesh
-from faying.fe.sides import sides_on
 from tests.helpers.boxes import with_middles
+from tests.helpers.sides import sides_on
 
 CUBE = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 

@@ -8,11 +8,11 @@ from scipy.optimize import brentq
 
 import faying
 from faying.fe.mesh import Mesh
-from faying.fe.sides import sides_on
 from faying.joint.attachments import PointMass, Support
 from faying.joint.structure import Structure
 from faying.numerics.modes import lowest_modes
 from tests.helpers.boxes import block
+from tests.helpers.sides import sides_on
 
 SIMPLE = faying.Material(name="simple", E=200e9, nu=0.0, density=7800.0)
 SPEED = (200e9 / 7800) ** 0.5

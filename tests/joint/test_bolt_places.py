@@ -10,11 +10,11 @@ from faying.bolt.bolt import Bolt, Washer
 from faying.fe.holes import holes
 from faying.fe.interface import join
 from faying.fe.mesh import Mesh
-from faying.fe.sides import sides_on
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from tests.helpers.laws import Given
+from tests.helpers.sides import sides_on
 
 STEEL = faying.CATALOGUE["45 steel"]
 INNER, OUTER, N = 4.5e-3, 20e-3, 24

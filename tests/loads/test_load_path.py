@@ -9,7 +9,6 @@ import faying
 from faying.case.acting import acting, nothing
 from faying.case.case import Progress
 from faying.fe.interface import join
-from faying.fe.sides import sides_on
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
@@ -17,6 +16,7 @@ from faying.joint.load_path import Cut, LoadPaths
 from faying.joint.structure import Structure
 from faying.loads.answers import bolt_changes, cut_loads
 from faying.loads.solve import answers, near_factor, of_state, solved, statics_of
+from tests.helpers.sides import sides_on
 from tests.helpers.voxels import voxels
 from tests.joint.test_tighten import bed
 

@@ -7,12 +7,12 @@ import pytest
 
 import faying
 from faying.fe.interface import join
-from faying.fe.sides import sides_on
 from faying.joint.attachments import Support
 from faying.joint.joint import FittedJoint
 from faying.joint.structure import Structure
 from tests.helpers.bars import even
 from tests.helpers.plates import stacked
+from tests.helpers.sides import sides_on
 
 HALF, WIDE, THICK, ARM = 0.04, 0.02, 0.006, 0.02  # m: half of the flange, from its middle to a bolt
 CELL = 0.0025

@@ -290,8 +290,8 @@ def test_a_node_of_two_joints_grows_together_with_both():
     The corner's edge lies in two joints, and the same nodes come out whatever is named first.
     """
     from faying.fe.mesh import Mesh
-    from faying.fe.sides import sides_on
     from tests.helpers.boxes import block
+    from tests.helpers.sides import sides_on
 
     points, parts, faces, owner, offset = [], {}, {}, {}, 0
     for name, origin in (("a", (0, 0, 1)), ("b", (0, 0, 0)), ("c", (1, 0, 0))):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from faying.fe.face_map import joint_map, projection, quartered
-from faying.geometry.cad import read_step
+from faying.geometry.cad import read_parts
 from faying.output import scene as scenes
 from faying.output.scene.text import to_dict
 from tests.helpers.boxes import stack
@@ -150,7 +150,7 @@ def test_the_text_gives_back_points_shapes_and_maps():
 
 @pytest.mark.parametrize("name", ["t-specimen/t-specimen.step", "plates-and-bolts/plates.step"])
 def test_faces_of_a_step_file_have_the_numbers_of_the_kernel(name):
-    solids = list(read_step(EXAMPLES / name).solids)
+    solids = list(read_parts(EXAMPLES / name).solids)
     found = scenes.of_step(EXAMPLES / name)
     assert list(found.parts) == [solid.name for solid in solids]
     for part, solid in enumerate(solids):

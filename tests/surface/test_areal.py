@@ -42,7 +42,7 @@ def test_volumes_of_normal_heights(noise):
     found = [noise.Vmp, noise.Vmc, noise.Vvc, noise.Vvv, noise.Sxp]
     expected = [material(0.1), material(0.8) - material(0.1), void(0.1) - void(0.8), void(0.8), norm.isf(0.025)]
     assert found == pytest.approx(1e-6 * np.array(expected), rel=SAMPLING)
-    assert noise.Sp + noise.Sv == pytest.approx(noise.Sz, rel=1e-12)
+    assert noise.Sp > 4e-6 < noise.Sv  # the greatest of 260,000
 
 
 @pytest.mark.parametrize(("dx", "dy"), [(1e-6, 1e-6), (2e-6, 1e-6)])

@@ -381,7 +381,7 @@ def test_the_pressure_of_the_preload_in_calculix(tmp_path):
     """Blocks pressed together on half of their backs: our pressure against node-to-surface contact, 2 % in norm."""
     from faying.case.case import build
     from faying.export.attach import attach
-    from faying.fe.sides import sides_on
+    from tests.helpers.sides import sides_on
 
     made = two(("hex8", "hex8"), ((12, 8), (12, 8)), counts=(10, 8))
     faces, owner = dict(made.faces), dict(made.face_part)

@@ -47,8 +47,7 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> Damped
         middle_laws = laws_at(structure, preload, FRICTION[1], SPRINGS)
     except InputError:
         return None
-    greatest = np.full(choice.count, max(choice.levels))
-    basis = level_basis(structure, preload, found, coarse[: 2 if assumed else 1], greatest)
+    basis = level_basis(structure, preload, found, coarse[: 1 + assumed], np.full(choice.count, max(choice.levels)))
 
     def at(laws: Sequence[Microslip]) -> AtLevels:
         return level_model(structure, preload, basis, laws).at(choice.levels, choice.count)

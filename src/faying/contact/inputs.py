@@ -187,11 +187,6 @@ class SurfaceInputs(FractalSurface):
         """Standard deviation of summit heights, sqrt((1 - 0.8968/alpha) m0) [m]."""
         return sqrt((1 - 0.8968 / self.alpha) * self.m0)
 
-    @property
-    def summit_plane(self) -> float:
-        """Height of the mean plane of the summits above that of the surface, 4 sqrt(m0/(pi alpha)) [m]."""
-        return 4 * sqrt(self.m0 / (pi * self.alpha))
-
 
 @final
 @dataclass(frozen=True, kw_only=True)

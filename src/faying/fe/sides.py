@@ -35,14 +35,6 @@ def skin(blocks: Blocks, nodes: int) -> Blocks:
     return tuple(faces for faces in outer if len(faces))
 
 
-def sides_on(chosen: Index, blocks: Blocks, nodes: int) -> Blocks:
-    """The outer sides all of whose nodes are among those chosen, normals outwards."""
-    inside = np.zeros(nodes, dtype=bool)
-    inside[chosen] = True
-    picked = (side[inside[side].all(axis=1)] for side in skin(blocks, nodes))
-    return tuple(side for side in picked if len(side))
-
-
 def triangles_of(blocks: Blocks) -> Index:
     """Triangles between the corners of faces (t, 3), for pictures."""
     out = [

@@ -229,11 +229,6 @@ def check_head(path: Path) -> None:
         raise ReadError(f"{path} is not a STEP file ({why}); export STEP AP214 or AP242")
 
 
-def read_step(path: Path) -> Any:
-    """Return the OpenCASCADE shape of the solids of a STEP file, in millimetres. Raises ReadError as `read_parts`."""
-    return kernel().Compound(read_parts(path).solids)
-
-
 def write_step(path: Path, solids: Sequence[Any]) -> None:
     """Write solids [mm] as a STEP file, which is the same file whenever it is written.
 

@@ -131,11 +131,6 @@ class ContactMaps(Summary):
         return self.heights - np.where(self.at_hardness, np.maximum(-self.gap, 0.0), 0.0)
 
     @property
-    def mean_gap(self) -> float:
-        """Mean distance between the surfaces [m]."""
-        return float(np.maximum(self.gap, 0).mean())
-
-    @property
     def approach(self) -> float:
         """How far the plane has come down from first touch [m]."""
         return float(self.heights.max()) - self.plane

@@ -25,7 +25,7 @@ class Identified(Summary):
     """Modes of a test and what they rest on.
 
     modes; poles: all of the stabilisation diagram; frf: the FRFs used; fit (n, f): what modes and residuals make of the
-    measured pairs; residues (m, n) of receptance; misfit [-]: rms of what the fit leaves over rms of the FRFs; rule;
+    measured pairs; misfit [-]: rms of what the fit leaves over rms of the FRFs; rule;
     turned: whether `frf` has the complex conjugates of what was measured.
     """
 
@@ -33,7 +33,6 @@ class Identified(Summary):
     poles: Poles
     frf: FRF
     fit: Complex
-    residues: Complex
     misfit: float
     rule: Rule
     turned: bool = False
@@ -110,9 +109,7 @@ def identify_modes(
         source=frf.source,
     )
     misfit = float(np.linalg.norm(used.rows() - fit) / np.linalg.norm(used.rows()))
-    return Identified(
-        modes=modes, poles=diagram, frf=used, fit=fit, residues=constants, misfit=misfit, rule=rule, turned=turned
-    )
+    return Identified(modes=modes, poles=diagram, frf=used, fit=fit, misfit=misfit, rule=rule, turned=turned)
 
 
 def _fitted(frf: FRF, found: list[Complex], search: float | None) -> tuple[Complex, Array, Array, tuple[str, ...]]:

@@ -83,7 +83,6 @@ def curve_sets(
     )
     scale = greatest * speeds**2
     wanted = expected * scale > NOTHING * (expected * scale).max(initial=0.0)
-    # made at the levels with the greatest damping at rest
     basis = level_basis(structure, preload, found, list(laws.values())[:2], np.where(wanted, likely * scale, 0.0))
     laws[FRICTION[1]] = laws_at(structure, preload, FRICTION[1], SPRINGS)
     moved = moved_by_loss(structure, found)

@@ -1,13 +1,12 @@
-"""The areal parameters of ISO 25178-2: heights, slopes, bearing curve, volumes, autocorrelation."""
+"""The areal parameters of ISO 25178-2 beside those of `roughness`: peaks, bearing curve, volumes, autocorrelation."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
 from faying.style import Summary
 from faying.surface.form import Prepared
-from faying.surface.roughness import roughness
 from faying.typing import Array
 from faying.units import show
 
@@ -24,9 +23,7 @@ class ArealParameters(Summary):
     """Numbers of a levelled scan without a filter, by their names in ISO 25178-2.
 
     Args:
-        Sq, Ssk, Sku, Sp, Sv, Sz, Sa: rms height [m], skewness and kurtosis [-], highest peak above and deepest pit
-            below the mean, their sum, mean absolute height [m].
-        Sdq, Sdr: rms gradient, developed over projected area less 1 [-].
+        Sp, Sv: highest peak above and deepest pit below the mean [m].
         Sk, Spk, Svk: heights of core, reduced peaks and reduced valleys [m].
         Smr1, Smr2: material ratios [-] where the core begins and ends.
         Sxp: from the height at a material ratio of 2.5 % down to that at 50 % [m].
@@ -39,15 +36,8 @@ class ArealParameters(Summary):
         ISO 25178-2:2021.
     """
 
-    Sq: float
-    Ssk: float
-    Sku: float
     Sp: float
     Sv: float
-    Sz: float
-    Sa: float
-    Sdq: float
-    Sdr: float
     Sk: float
     Spk: float
     Svk: float
@@ -64,30 +54,22 @@ class ArealParameters(Summary):
     @classmethod
     def of(cls, ready: Prepared) -> "ArealParameters":
         """Those of a scan that is levelled; points that were filled in count for Sal and Str alone."""
-        rough, heights = roughness(ready), ready.scan.heights
+        heights = ready.scan.heights
         known = heights[ready.known]
-        falling = np.sort(known - known.mean())[::-1]
         sal, longest = _decay(heights - heights.mean(), ready.scan.spacing)
-        rest = {"Sp": float(falling[0]), "Sv": float(-falling[-1])}
-        same = {one.name: getattr(rough, one.name) for one in fields(cls) if hasattr(type(rough), one.name)}
-        return cls(**same, **rest, **_bearing(falling), Sal=sal, Str=sal / longest)
+        return cls(**_bearing(np.sort(known - known.mean())[::-1]), Sal=sal, Str=sal / longest)
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """All numbers, by the groups of the standard."""
-        lengths = {"Sq", "Sa", "Sp", "Sv", "Sz", "Sk", "Spk", "Svk", "Sxp", "Vmp", "Vmc", "Vvc", "Vvv", "Sal"}
-
-        def text(value: float, length: bool) -> str:
-            return "-" if np.isnan(value) else show(value, "m") if length else f"{value:.4g}"
 
         def row(*names: str) -> str:
-            return ", ".join(f"{name} {text(getattr(self, name), name in lengths)}" for name in names)
+            return ", ".join(f"{name} {show(getattr(self, name), 'm')}" for name in names)
 
         return "ISO 25178-2 without a filter", {
-            "height": row("Sq", "Sa", "Sp", "Sv", "Sz", "Ssk", "Sku"),
-            "hybrid": row("Sdq", "Sdr"),
-            "bearing": row("Sk", "Spk", "Svk", "Smr1", "Smr2", "Sxp"),
-            "volume": row("Vmp", "Vmc", "Vvc", "Vvv"),
-            "spatial": row("Sal", "Str"),
+            "heights": row("Sp", "Sv", "Sxp"),
+            "core": f"{row('Sk', 'Spk', 'Svk')}, Smr1 {self.Smr1:.3g}, Smr2 {self.Smr2:.3g}",
+            "volumes": row("Vmp", "Vmc", "Vvc", "Vvv"),
+            "lengths": f"{row('Sal')}, Str {self.Str:.3g}".replace("nan", "-"),
         }
 
 
@@ -105,26 +87,23 @@ def _bearing(falling: Array) -> dict[str, float]:
     above, below = np.maximum(falling - top, 0.0), np.maximum(bottom - falling, 0.0)
     peaks, valleys = float(np.mean(falling > top)), float(np.mean(falling < bottom))
 
-    def height(share: float) -> float:
-        return float(np.interp(share, ratio, falling))
-
-    def material(share: float) -> float:
-        return float(np.maximum(falling - height(share), 0.0).mean())
-
-    def void(share: float) -> float:
-        return float(np.maximum(height(share) - falling, 0.0).mean())
-
+    heights = {share: float(np.interp(share, ratio, falling)) for share in (EXTREME, PEAK, MIDDLE, VALLEY)}
+    material, void = (
+        {share: float(np.maximum(sign * (falling - z), 0.0).mean()) for share, z in heights.items()} for sign in (1, -1)
+    )
     return {
+        "Sp": float(falling[0]),
+        "Sv": float(-falling[-1]),
         "Sk": core,
         "Spk": 2 * float(above.mean()) / peaks if peaks else 0.0,  # a triangle of the same area
         "Svk": 2 * float(below.mean()) / valleys if valleys else 0.0,
         "Smr1": peaks,
         "Smr2": 1 - valleys,
-        "Sxp": height(EXTREME) - height(MIDDLE),
-        "Vmp": material(PEAK),
-        "Vmc": material(VALLEY) - material(PEAK),
-        "Vvc": void(PEAK) - void(VALLEY),
-        "Vvv": void(VALLEY),
+        "Sxp": heights[EXTREME] - heights[MIDDLE],
+        "Vmp": material[PEAK],
+        "Vmc": material[VALLEY] - material[PEAK],
+        "Vvc": void[PEAK] - void[VALLEY],
+        "Vvv": void[VALLEY],
     }
 
 

@@ -27,7 +27,6 @@ class Combined:
         m0: sum of the mean square heights [m2].
         m2: sum of the mean square slopes [-], each at the shortest wavelength of its scan.
         m4: sum of the mean square curvatures [1/m2], in the same way.
-        spacings: of the two scans [m]; they show whether m2 and m4 belong together.
         frequency: of the summed spectrum [1/m].
         density: of the summed spectrum [m3].
     """
@@ -37,7 +36,6 @@ class Combined:
     m0: float
     m2: float
     m4: float
-    spacings: tuple[float, float]
     frequency: Array
     density: Array
 
@@ -131,7 +129,6 @@ def combine(
         m0=m0,
         m2=m2,
         m4=m4,
-        spacings=(max(scan_a.spacing), max(scan_b.spacing)),
         frequency=joint.frequency,
         density=joint.density,
     )

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from faying import units
 from faying.style import Summary
 from faying.surface.convention import cut_factor
@@ -47,11 +45,6 @@ class FractalNumbers(Summary):
         if self.areal:
             return self.G
         return self.G * cut_factor(self.D) ** (-1 / (2 * self.D - 4)) if 2 < self.D < 3 else float("nan")
-
-    @property
-    def implied_Ra(self) -> float:
-        """Mean absolute height [m] of Gaussian heights of rms `implied_Rq`: (2/pi)^(1/2) of it."""
-        return float(self.implied_Rq * (2 / np.pi) ** 0.5)
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """D and G with their intervals, the band, the rms heights, the convention, and what the user ought to know."""

@@ -26,16 +26,6 @@ def series_frequencies(length: float, terms: int, gamma: float = 1.5) -> Array:
     return np.asarray(gamma ** np.arange(terms) / length, float)
 
 
-def series_moments(
-    D: float, G: float, *, length: float, terms: int, gamma: float = 1.5, convention: str = "yan-komvopoulos"
-) -> tuple[float, float, float]:
-    """Return m0 [m2], m2 [-], m4 [1/m2] of the ideal series with surface dimension D = Ds + 1 and G [m]."""
-    f = series_frequencies(length, terms, gamma)
-    power = prefactor(convention, gamma) * log(gamma) * G ** (2 * D - 4) * f ** (2 * D - 6) / 2
-    m0, m2, m4 = (float(np.sum(power * (2 * pi * f) ** (2 * k))) for k in range(3))
-    return m0, m2, m4
-
-
 def invert_ratio(ratio: float, frequency: ArrayLike, weight: ArrayLike) -> float:
     """Return the slope b for which sum(weight f^(2-b)) / sum(weight f^-b) = ratio; a one-dimensional root.
 
@@ -64,7 +54,7 @@ def invert_ratio(ratio: float, frequency: ArrayLike, weight: ArrayLike) -> float
 def from_series_moments(
     m0: float, m2: float, *, length: float, terms: int, gamma: float = 1.5, convention: str = "yan-komvopoulos"
 ) -> tuple[float, float]:
-    """Return (D, G [m]) of the series whose moments are m0 [m2] and m2 [-]; the exact inverse of `series_moments`.
+    """Return (D, G [m]) of the series whose moments are m0 [m2] and m2 [-].
 
     `length`, `terms` and `gamma` fix its frequencies. Raises InputError for moments that are not positive or that no
     dimension has.

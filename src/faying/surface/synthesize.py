@@ -58,22 +58,7 @@ def spectral(
     Raises:
         InputError: for D outside (2, 3), both or neither of G and Rq, and values that are not positive.
     """
-    return _output(
-        *spectral_heights(
-            shape,
-            spacing=spacing,
-            D=D,
-            G=G,
-            Rq=Rq,
-            longest=longest,
-            shortest=shortest,
-            lay=lay,
-            periodic=periodic,
-            convention=convention,
-            gamma=gamma,
-            seed=seed,
-        )
-    )
+    return _output(*spectral_heights(**locals()))
 
 
 def weierstrass_mandelbrot(
