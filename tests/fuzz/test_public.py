@@ -41,6 +41,7 @@ CALLS = {
     "Scan.levelled": (SCAN.levelled, {"degree": 1}),
     "Scan.plot": (SCAN.plot, {"axes": None, "degree": 1}),
     "Scan.profile": (SCAN.profile, {"along": "x", "index": 2}),
+    "Scan.areal": (SCAN.areal, {"degree": 1, "spikes": True}),
     "Scan.roughness": (SCAN.roughness, {"degree": 1}),
     "Scan.with_heights": (SCAN.with_heights, {"heights": HEIGHTS, "note": "x"}),
     "Profile": (faying.Profile, {"heights": HEIGHTS[0], "spacing": 1e-6, "source": "x"}),

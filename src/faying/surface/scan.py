@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Self, cast, final
 
 import numpy as np
 
-from faying.checks import shown, whole
+from faying.checks import flag, shown, whole
 from faying.errors import FayingError, InputError
 from faying.style import Summary
 from faying.surface.areal import ArealParameters
@@ -185,7 +185,7 @@ class Scan(Heights, AreaHeights):
         Source:
             ISO 25178-2:2021.
         """
-        return ArealParameters.of(prepared(self, degree=degree, spikes=spikes))
+        return ArealParameters.of(prepared(self, degree=degree, spikes=flag(spikes, "spikes")))
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Size, points, spacing, Sq, missing points and source."""
