@@ -77,11 +77,11 @@ def _bearing(falling: Array) -> dict[str, float]:
     """Numbers of the bearing curve, from the heights (n,) [m] in falling order, each of which has 1/n of the area."""
     n = len(falling)
     ratio = (np.arange(n) + 0.5) / n
-    width = max(round(CORE * n), 1) if n > 1 else 0
+    width = round(CORE * n)
     drops = falling[: n - width] - falling[width:]
     # of secants that are equally flat the middle one
     start = int(np.median(np.flatnonzero(drops <= drops.min() * (1 + 1e-12))))
-    core = float(drops[start]) * n / max(width, 1)
+    core = float(drops[start]) * n / width
     top = float(falling[start] + core * ratio[start])
     bottom = top - core
     above, below = np.maximum(falling - top, 0.0), np.maximum(bottom - falling, 0.0)

@@ -43,23 +43,23 @@ def command(
     **given: str | None,
 ) -> None:
     """Roughness, fractal dimension D and fractal roughness G of the scan in FILE."""
+    from faying.surface.areal import ArealParameters
     from faying.surface.files.read import read_scan
     from faying.surface.form import prepared
     from faying.surface.fractal import fit_all
     from faying.surface.roughness import roughness
-    from faying.surface.scan import Scan
 
     sides = {"size": size, "spacing": spacing}
     sizes: dict[str, Any] = {name: lengths(text, name=f"--{name}") for name, text in sides.items() if text}
     scan = read_scan(file, **given, **sizes)
+    if iso and scan.heights.ndim == 1:
+        raise InputError("--iso is for scans; the parameters of a profile (ISO 21920-2) stand without it")
     ready = prepared(scan, degree=degree, spikes=not keep_spikes)
     methods = tuple(METHODS) if method == "all" else (method,)
     fits = fit_all(scan, methods=methods, self_test=test, degree=degree, spikes=not keep_spikes)
     document = describe(scan, ready, roughness(ready), fits)
     if iso:
-        if not isinstance(scan, Scan):
-            raise InputError("--iso is for scans; the parameters of a profile (ISO 21920-2) stand without it")
-        areal = scan.areal(degree=degree, spikes=not keep_spikes)
+        areal = ArealParameters.of(ready)
         document["areal"] = dict(finite(asdict(areal)))
     if plot:
         from faying.surface.figure import overview
