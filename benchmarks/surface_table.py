@@ -32,7 +32,6 @@ from faying.surface.synthesize import spectral, with_missing, with_noise
 
 SIZES = (256, 512, 1024, 2048)
 SHARES = (0.5, 0.35, 0.12, 0.03)
-SELF_TESTED = ("structure", "roughness-length", "higuchi", "mfdfa", "box")
 FRACDIMPY = """
 import json, sys, warnings
 warnings.simplefilter("ignore")
@@ -69,10 +68,10 @@ def surface(number: int) -> tuple[Scan, float, float, int, tuple[str, ...]]:
     return scan, D, G, side, tuple(what)
 
 
-def ours(scan: Scan, D: float, G: float, method: str, self_test: bool = False) -> dict[str, Any] | None:
+def ours(scan: Scan, D: float, G: float, method: str) -> dict[str, Any] | None:
     """Error of D, its interval, and how G fared; None where the method refuses."""
     try:
-        fit = fit_fractal(scan, method, self_test=self_test)
+        fit = fit_fractal(scan, method)
     except FayingError:
         return None
     low, high = fit.D_interval
@@ -116,20 +115,17 @@ def peers(scan: Scan, D: float, side: int) -> dict[str, Any]:
 
 
 def row(number: int, beside: int) -> dict[str, Any]:
-    """Everything about one surface; self-tests and other packages for the first `beside` surfaces only."""
+    """Everything about one surface; other packages for the first `beside` surfaces only."""
     scan, D, G, side, what = surface(number)
     fits: dict[str, Any] = {m: ours(scan, D, G, m) for m in METHODS}
     if number >= beside:
         return {"number": number, "D": D, "G": G, "side": side, "what": what, "fits": fits}
-    if side == SIZES[0] and number % 5 == 0:
-        fits |= {f"{m}, self-tested": ours(scan, D, G, m, True) for m in SELF_TESTED}
     return {"number": number, "D": D, "G": G, "side": side, "what": what, "fits": fits | peers(scan, D, side)}
 
 
 def table(rows: list[dict[str, Any]]) -> str:
     """Markdown table over all rows, and one of PSD and moments by side and treatment."""
-    names = list(METHODS) + [f"{m}, self-tested" for m in SELF_TESTED]
-    names += ["SurfaceTopography PSD", "fracDimPy variogram", "fracDimPy box"]
+    names = [*METHODS, "SurfaceTopography PSD", "fracDimPy variogram", "fracDimPy box"]
     head = "| estimator | surfaces | bias of D | spread of D | coverage of D | median half-width | coverage of G |\n"
     head += "|---|---:|---:|---:|---:|---:|---:|\n"
     lines = [line(name, [r["fits"].get(name) for r in rows]) for name in names]

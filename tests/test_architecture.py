@@ -92,7 +92,6 @@ EXCEPTIONS = {
     "measured/records.py:frf_from_records": PUBLIC,
     "export/attach.py:attach": PUBLIC,
     "backbones/backbone.py:backbone": PUBLIC,
-    "surface/synthesis.py:spectral_heights": "arguments of the public function that calls it",
     "surface/synthesize.py:spectral": PUBLIC,
     "surface/synthesize.py:weierstrass_mandelbrot": PUBLIC,
 }

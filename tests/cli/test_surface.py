@@ -111,14 +111,6 @@ def test_plot_of_unknown_kind(file, tmp_path, capsys):
     assert "figures can be written as" in capsys.readouterr().err
 
 
-def test_self_test_says_what_it_took_off(tmp_path, capsys):
-    path = write_scan(spectral((128, 128), spacing=2e-6, D=2.6, G=1e-9, seed=1), tmp_path / "a.x3p")
-    assert run(str(path), "--method", "higuchi", "--self-test", "--json") == 0
-    fit = json.loads(capsys.readouterr().out)["fits"]["higuchi"]
-    assert isinstance(fit["bias"], float)
-    assert any("self-test on" in word for word in fit["warnings"])
-
-
 def test_a_line_scan(tmp_path, capsys):
     path = write_scan(spectral(2000, spacing=1e-6, D=2.4, G=1e-9, seed=1), tmp_path / "a.x3p")
     assert run(str(path), "--method", "all", "--plot", str(tmp_path / "a.png")) == 0

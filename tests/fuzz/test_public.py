@@ -37,7 +37,7 @@ TABLE = contact.TabulatedLaw(pressure=P, k_n=P * 1e6)
 CALLS = {
     "Scan": (faying.Scan, {"heights": HEIGHTS, "spacing": (1e-6, 1e-6), "source": "x"}),
     "Scan.cropped": (SCAN.cropped, {"share": 0.5}),
-    "Scan.fractal": (SCAN.fractal, {"method": "psd", "degree": 1, "spikes": True, "gamma": 1.5, "self_test": False}),
+    "Scan.fractal": (SCAN.fractal, {"method": "psd", "degree": 1, "spikes": True, "gamma": 1.5}),
     "Scan.levelled": (SCAN.levelled, {"degree": 1}),
     "Scan.plot": (SCAN.plot, {"axes": None, "degree": 1}),
     "Scan.profile": (SCAN.profile, {"along": "x", "index": 2}),

@@ -12,7 +12,6 @@ from faying.surface.convention import cut_factor, implied_Rq
 from faying.surface.estimators.table import ESTIMATORS, METHODS, share_left, window_transfer
 from faying.surface.fractal import fit_all
 from faying.surface.fractal_fit import consistency
-from faying.surface.selftest import self_test, stretch_of
 from faying.surface.synthesize import spectral, weierstrass_mandelbrot, with_missing, with_noise
 from faying.units import parse
 
@@ -136,8 +135,6 @@ def test_a_band_is_kept_to_and_checked():
     for band in ((1e-6, 1e-5), (1e-5, 1e-3), (2e-5, 2e-5)):
         with pytest.raises(InputError, match="twice the spacing"):
             fit_fractal(scan, band=band)
-    with pytest.raises(InputError, match="leave out band"):
-        fit_fractal(scan, band=(6e-6, 3e-5), self_test=True)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -188,28 +185,6 @@ def test_window_transfer_is_what_windows_of_noise_leave(order, integrated):
     cycles, share = share_left(order)
     assert np.interp(u, cycles, share) == pytest.approx(left, abs=1e-4)
     assert window_transfer(2.5, order, integrated) > 0
-
-
-@pytest.mark.parametrize("method", ["box", "higuchi"])
-def test_the_self_test_takes_the_bias_off(method):
-    scan = spectral((128, 128), spacing=1e-6, D=2.6, G=G, seed=11)
-    raw, fit = fit_fractal(scan, method), self_test(scan, method, rounds=12)
-    assert fit.bias == pytest.approx(raw.D - fit.D)
-    # one surface: within twice the 95 % half-width
-    assert abs(fit.D - 2.6) < fit.D_interval[1] - fit.D_interval[0]
-    assert fit.G_interval[0] / 100 < G < fit.G_interval[1] * 100
-    if method == "box":
-        assert abs(fit.D - 2.6) < abs(raw.D - 2.6)
-    assert any("self-test on" in w for w in fit.warnings)
-    assert raw.bias is None
-
-
-@given(stretch=st.floats(1.05, 30), D=st.floats(2.1, 2.9))
-def test_the_stretch_of_a_lay_is_found_from_its_strength(stretch, D):
-    theta = (np.arange(4000) + 0.5) * np.pi / 4000
-    g = (stretch * np.cos(theta) ** 2 + np.sin(theta) ** 2 / stretch) ** (D - 4)
-    strength = abs(np.mean(g * np.cos(2 * theta)) / np.mean(g))
-    assert stretch_of(strength, D) == pytest.approx(stretch, rel=1e-3)
 
 
 @pytest.mark.slow

@@ -3,13 +3,16 @@
 from collections.abc import Iterable
 from typing import Any
 
-from faying.checks import choice, flag, instance
+import numpy as np
+
+from faying.checks import choice, flag, instance, several
 from faying.errors import FayingError, InputError
 from faying.surface.convention import prefactor
-from faying.surface.estimators.table import METHODS
-from faying.surface.fractal_fit import FractalFit, plain_fit
-from faying.surface.heights import AreaHeights, LineHeights
-from faying.surface.selftest import self_test as corrected_fit
+from faying.surface.estimators.base import Estimate
+from faying.surface.estimators.table import ESTIMATORS, METHODS
+from faying.surface.form import Prepared, prepared
+from faying.surface.fractal_fit import Facts, FractalFit, result
+from faying.surface.heights import AreaHeights, LineHeights, sides_of, steps_of
 
 
 def fit_fractal(
@@ -21,7 +24,6 @@ def fit_fractal(
     spikes: bool = True,
     convention: str = "yan-komvopoulos",
     gamma: float = 1.5,
-    self_test: bool = False,
 ) -> FractalFit:
     """Estimate the fractal dimension D and the fractal roughness G of a scan or profile, with 95 % intervals.
 
@@ -36,7 +38,6 @@ def fit_fractal(
         spikes: take single outlying points out.
         convention: "yan-komvopoulos" (that of the JK model, c = 1) or "majumdar-bhushan" (c = 1/ln gamma).
         gamma: ratio of neighbouring frequencies in that series, above 1.
-        self_test: correct D and G by what the method finds on synthetic surfaces like this one; not with `band`.
 
     Returns:
         FractalFit. For a scan G is that of the surface, the power of all directions together. For a profile G is the
@@ -53,11 +54,34 @@ def fit_fractal(
     choice(method, "method", METHODS)
     prefactor(convention, gamma)
     flag(spikes, "spikes")
-    if flag(self_test, "self_test"):
-        if band is not None:
-            raise InputError("self_test chooses the band itself; leave out band or self_test")
-        return corrected_fit(scan, method, degree=degree, spikes=spikes, convention=convention, gamma=gamma)
-    return plain_fit(scan, method, band=band, degree=degree, spikes=spikes, convention=convention, gamma=gamma)
+    ready = prepared(scan, degree=degree, spikes=spikes)
+    estimate = _estimated(ready, method, _limits(ready, band), prefactor(convention, gamma))
+    return result(estimate, Facts.of(scan, ready), method=method, convention=convention, gamma=gamma, drawn=ready.scan)
+
+
+def _estimated(ready: Prepared, method: str, limits: tuple[float, float] | None, c: float) -> Estimate:
+    try:
+        return ESTIMATORS[method].estimate(ready, limits, c)
+    except FayingError:
+        raise
+    except (np.linalg.LinAlgError, FloatingPointError, ValueError, ZeroDivisionError, OverflowError) as fault:
+        raise InputError(
+            f"{ready.scan.source}: the heights obey no power law that {method} can fit ({fault})"
+        ) from fault
+
+
+def _limits(ready: Prepared, band: object) -> tuple[float, float] | None:
+    if band is None:
+        return None
+    scan = ready.scan
+    longest, shortest = min(sides_of(scan)), 2 * max(steps_of(scan))
+    low, high = sorted(several(band, "band", 2, "m", least=0))
+    if not (shortest * (1 - 1e-9) <= low < high <= longest * (1 + 1e-9)):
+        raise InputError(
+            f"band = ({low:.4g}, {high:.4g}): give wavelengths in metres between twice the spacing, "
+            f"{shortest:.4g}, and the side, {longest:.4g}"
+        )
+    return low, high
 
 
 def fit_all(

@@ -5,15 +5,12 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
-from faying.checks import several
-from faying.errors import FayingError, InputError
 from faying.surface.convention import NAMES, check_dimension, cut_factor, implied_Rq, prefactor
 from faying.surface.estimators.base import Estimate
-from faying.surface.estimators.table import ESTIMATORS
 from faying.surface.figure import fit_plot
-from faying.surface.form import Prepared, prepared
+from faying.surface.form import Prepared
 from faying.surface.fractal_numbers import FractalNumbers, metres
-from faying.surface.heights import AreaHeights, LineHeights, sides_of, steps_of
+from faying.surface.heights import AreaHeights, LineHeights, sides_of
 from faying.surface.roughness import roughness
 from faying.surface.spectrum import Spectrum
 
@@ -41,7 +38,6 @@ class FractalFit(FractalNumbers):
         misfit: mean squared residual over its expectation [-], 1 for a true power law.
         missing: missing points that were filled in.
         spikes: spikes that were filled in.
-        bias: what a self-test took off D [-], None without one.
         warnings: what the user ought to know.
         scatter: of D and G together, where the estimator states their covariance.
         c: prefactor of the convention [-].
@@ -93,48 +89,6 @@ class Facts:
         )
 
 
-def plain_fit(
-    scan: AreaHeights | LineHeights,
-    method: str = "psd",
-    *,
-    band: object = None,
-    degree: int = 1,
-    spikes: bool = True,
-    convention: str = "yan-komvopoulos",
-    gamma: float = 1.5,
-) -> FractalFit:
-    """Fit D and G without a self-test; see `faying.surface.fractal.fit_fractal`."""
-    ready = prepared(scan, degree=degree, spikes=spikes)
-    estimate = _estimated(ready, method, _limits(ready, band), prefactor(convention, gamma))
-    facts = Facts.of(scan, ready)
-    return result(estimate, facts, method=method, convention=convention, gamma=gamma, drawn=ready.scan)
-
-
-def _estimated(ready: Prepared, method: str, limits: tuple[float, float] | None, c: float) -> Estimate:
-    try:
-        return ESTIMATORS[method].estimate(ready, limits, c)
-    except FayingError:
-        raise
-    except (np.linalg.LinAlgError, FloatingPointError, ValueError, ZeroDivisionError, OverflowError) as fault:
-        raise InputError(
-            f"{ready.scan.source}: the heights obey no power law that {method} can fit ({fault})"
-        ) from fault
-
-
-def _limits(ready: Prepared, band: object) -> tuple[float, float] | None:
-    if band is None:
-        return None
-    scan = ready.scan
-    longest, shortest = min(sides_of(scan)), 2 * max(steps_of(scan))
-    low, high = sorted(several(band, "band", 2, "m", least=0))
-    if not (shortest * (1 - 1e-9) <= low < high <= longest * (1 + 1e-9)):
-        raise InputError(
-            f"band = ({low:.4g}, {high:.4g}): give wavelengths in metres between twice the spacing, "
-            f"{shortest:.4g}, and the side, {longest:.4g}"
-        )
-    return low, high
-
-
 def result(
     e: Estimate,
     facts: Facts,
@@ -142,7 +96,6 @@ def result(
     method: str,
     convention: str,
     gamma: float,
-    bias: float | None = None,
     drawn: AreaHeights | LineHeights | Spectrum | None = None,
 ) -> FractalFit:
     """Complete an estimate by what it implies over the side, its convention in words, and its warnings."""
@@ -171,7 +124,6 @@ def result(
         misfit=e.misfit,
         missing=facts.missing,
         spikes=facts.spikes,
-        bias=bias,
         warnings=tuple(words),
         scatter=e.scatter,
         c=c,

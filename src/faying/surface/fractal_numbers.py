@@ -28,7 +28,6 @@ class FractalNumbers(Summary):
     misfit: float
     missing: int
     spikes: int
-    bias: float | None = None
     warnings: tuple[str, ...] = ()
     scatter: EstimateScatter | None = None
     c: float = 1.0
@@ -59,8 +58,6 @@ class FractalNumbers(Summary):
         }
         if self.missing or self.spikes:
             rows["filled in"] = f"{self.missing} missing points and {self.spikes} spikes"
-        if self.bias is not None:
-            rows["self-test"] = f"took {self.bias:.3g} off D"
         if self.warnings:
             rows["warnings"] = "; ".join(self.warnings)
         return f"Fractal fit of a {'scan' if self.areal else 'profile'} by {self.method}", rows

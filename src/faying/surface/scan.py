@@ -81,7 +81,6 @@ class Heights(Summary):
         spikes: bool = True,
         convention: str = "yan-komvopoulos",
         gamma: float = 1.5,
-        self_test: bool = False,
     ) -> FractalFit:
         """Return D and G with their intervals, and the band of wavelengths that they hold in.
 
@@ -95,7 +94,6 @@ class Heights(Summary):
             spikes=spikes,
             convention=convention,
             gamma=gamma,
-            self_test=self_test,
         )
 
     def levelled(self, degree: int = 1) -> Self:

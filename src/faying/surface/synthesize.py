@@ -1,17 +1,38 @@
-"""Surfaces and profiles of known D and G: spectral (Gaussian) and Weierstrass-Mandelbrot."""
+"""Surfaces and profiles of known D and G: spectral (Gaussian) and Weierstrass-Mandelbrot; noise and missing points."""
 
-from math import floor, log, pi
+from math import ceil, cos, floor, log, pi, sin
+from typing import TypeVar
 
 import numpy as np
 
-from faying.checks import number, whole
+from faying.checks import flag, instance, number, several, shown, whole
 from faying.errors import InputError
-from faying.surface.convention import check_dimension, prefactor
+from faying.surface.convention import G_from_Rq, check_dimension, density, prefactor
+from faying.surface.heights import AreaHeights
 from faying.surface.scan import Profile, Scan
-from faying.surface.synthesis import MAX_POINTS, Seed, generator_of, grid_of, spectral_heights
-from faying.surface.synthesis import with_missing as with_missing
-from faying.surface.synthesis import with_noise as with_noise
 from faying.typing import Array
+
+Map = TypeVar("Map", bound=AreaHeights)
+MAX_POINTS = 2**31  # along a side
+Seed = int | np.random.Generator
+
+
+def _generator_of(seed: Seed) -> np.random.Generator:
+    """A generator of random numbers; InputError unless a whole number, 0 or more, or a generator is given."""
+    if isinstance(seed, np.random.Generator):
+        return seed
+    return np.random.default_rng(whole(seed, "seed", least=0, greatest=2**128))
+
+
+def _grid_of(
+    shape: int | tuple[int, int], spacing: float | tuple[float, float]
+) -> tuple[tuple[int, ...], tuple[float, ...]]:
+    """Counts and spacings in the order of the axes of the heights (y, x), or (x,)."""
+    given = shape if isinstance(shape, list | tuple) else (shape,)
+    if len(given) not in (1, 2):
+        raise InputError(f"shape = {shown(shape)}: give (ny, nx) for a scan or n for a profile, 2 points at least")
+    counts = tuple(whole(n, "shape (points)", least=2, greatest=MAX_POINTS) for n in given)
+    return counts, several(spacing, "spacing", len(counts), "m", alike=True, least=0)[::-1]
 
 
 def _output(z: Array, steps: tuple[float, ...], source: str) -> Scan | Profile:
@@ -58,7 +79,60 @@ def spectral(
     Raises:
         InputError: for D outside (2, 3), both or neither of G and Rq, and values that are not positive.
     """
-    return _output(*spectral_heights(**locals()))
+    check_dimension(D)
+    counts, steps = _grid_of(shape, spacing)
+    lengths = {"G": G, "Rq": Rq, "longest": longest, "shortest": shortest}
+    G, Rq, longest, shortest = (v if v is None else number(v, n, "m", least=0) for n, v in lengths.items())
+    _scale_of(G, Rq)
+    c = prefactor(convention, gamma)
+    level = density(D, G, c) if G is not None else density(D, G_from_Rq(D, 1e-6, 1e-3, c), c)
+    total = counts if flag(periodic, "periodic") else tuple(2 * n for n in counts)
+    f, real, uneven = _frequencies(total, steps, D, lay)
+    cut = 0.5 / max(steps) if shortest is None else 1 / shortest
+    effective = np.maximum(f, 1 / longest) if longest is not None else f
+    with np.errstate(divide="ignore"):
+        power = level / uneven * effective ** -(7 - 2 * D) / (2 * pi * effective if len(counts) == 2 else 2.0)
+    power[(real > cut * (1 + 1e-12)) | (real == 0)] = 0.0
+    z = _coloured(power, total, steps, _generator_of(seed))
+    z = np.ascontiguousarray(z[tuple(slice(0, n) for n in counts)])
+    z -= z.mean()
+    if Rq is not None:
+        z *= Rq / z.std()
+    return _output(z, steps, f"spectral surface, D {D}, {_scale_of(G, Rq)}, {convention}")
+
+
+def _scale_of(G: float | None, Rq: float | None) -> str:
+    """The scale of the heights in words; InputError unless one of the two is given."""
+    if (G is None) == (Rq is None):
+        raise InputError("give either G (fractal roughness, metres) or Rq (rms height, metres), one of them")
+    return f"G {G:.4g} m" if G is not None else f"Rq {Rq:.4g} m"
+
+
+def _frequencies(
+    total: tuple[int, ...], steps: tuple[float, ...], D: float, lay: tuple[float, float] | None
+) -> tuple[Array, Array, float]:
+    """Frequencies [1/m] of the half-plane as the spectrum sees them (stretched by the lay) and as they are, and the
+    mean over directions that keeps the power of all directions together that of G."""
+    if lay is not None and (not isinstance(lay, list | tuple) or len(lay) != 2):
+        raise InputError(f"lay = {shown(lay)}: give (angle in radians, stretch), the stretch 1 or more")
+    angle, stretch = (number(lay[0], "angle of the lay", "rad"), lay[1]) if lay is not None else (0.0, 1.0)
+    number(stretch, "stretch of the lay", least=1, ends="[)")
+    last = np.asarray(np.fft.rfftfreq(total[-1], steps[-1]), np.float64)
+    if len(total) == 1:
+        return last, last, 1.0
+    turn = (np.arange(720) + 0.5) * pi / 720
+    uneven = float(np.mean((stretch * np.cos(turn) ** 2 + np.sin(turn) ** 2 / stretch) ** (D - 4)))
+    fy, fx = np.asarray(np.fft.fftfreq(total[0], steps[0]), np.float64)[:, None], last[None, :]
+    along, across = fx * cos(angle) + fy * sin(angle), -fx * sin(angle) + fy * cos(angle)
+    return np.hypot(along * stretch**0.5, across / stretch**0.5), np.hypot(fx, fy), uneven
+
+
+def _coloured(power: Array, total: tuple[int, ...], steps: tuple[float, ...], rng: np.random.Generator) -> Array:
+    """White noise given the two-sided power [m4 or m3]."""
+    from scipy import fft
+
+    area = float(np.prod(steps))
+    return np.asarray(fft.irfftn(fft.rfftn(rng.standard_normal(total)) * np.sqrt(power / area), total))
 
 
 def weierstrass_mandelbrot(
@@ -102,7 +176,7 @@ def weierstrass_mandelbrot(
     """
     check_dimension(D)
     c = prefactor(convention, gamma)
-    counts, steps = grid_of(shape, spacing)
+    counts, steps = _grid_of(shape, spacing)
     G = number(G, "G", "m", least=0)
     side = max(n * d for n, d in zip(counts, steps, strict=True))
     L = side if length is None else number(length, "length", "m", least=0)
@@ -112,7 +186,7 @@ def weierstrass_mandelbrot(
         raise InputError(f"shortest = {end:.4g} m, length = {L:.4g} m: the shortest wavelength is below the longest")
     M = ridges if len(counts) == 2 else 1
     n = np.arange(floor(log(L / end) / log(gamma) + 1e-12) + 1)
-    rng = generator_of(seed if seed is not None else 0)
+    rng = _generator_of(seed if seed is not None else 0)
     phase = rng.uniform(0, 2 * pi, (M, len(n))) if seed is not None else np.zeros((M, len(n)))
     # c ln(gamma) is ln(gamma) for Yan-Komvopoulos and 1 for Majumdar-Bhushan
     amplitude = L * (G / L) ** (D - 2) * (c * log(gamma) / M) ** 0.5 * gamma ** ((D - 3) * n)  # eq. (5)
@@ -133,3 +207,20 @@ def _waves(k: Array, amplitude: Array, phase: Array, counts: tuple[int, ...], st
     # cos(a + b) = cos a cos b - sin a sin b makes the double sum two matrix products
     a, b = np.outer(np.arange(counts[0]) * steps[0], ky) + shift, np.outer(kx, x)
     return np.asarray((np.cos(a) * weight) @ np.cos(b) - (np.sin(a) * weight) @ np.sin(b))
+
+
+def with_noise(scan: Map, *, rms: float, seed: Seed = 0) -> Map:
+    """Add white Gaussian noise of `rms` [m], or text with a unit, to every known point."""
+    instance(scan, AreaHeights, "scan", "give a Scan, as faying.read_scan returns it")
+    rms, rng = number(rms, "rms", "m", least=0, ends="[)"), _generator_of(seed)
+    return scan.with_heights(scan.heights + rng.normal(0, rms, scan.shape), f"white noise of {rms:.3g} m added")
+
+
+def with_missing(scan: Map, *, share: float, seed: Seed = 0) -> Map:
+    """Make a random `share` (0..1) of the points missing."""
+    instance(scan, AreaHeights, "scan", "give a Scan, as faying.read_scan returns it")
+    share, rng = number(share, "share of missing points", least=0, greatest=1, ends="[)"), _generator_of(seed)
+    count = ceil(share * scan.heights.size - 1e-9)
+    z = scan.heights.ravel().copy()
+    z[rng.choice(z.size, count, replace=False)] = np.nan
+    return scan.with_heights(z.reshape(scan.shape), f"{count} points made missing")

@@ -26,7 +26,6 @@ from faying.units import lengths, show
 @click.option("--spacing", metavar="LENGTHS", help='Distance of its points, in place of --size, for example "5 um".')
 @click.option("--channel", help="Name of the map of heights, where the file holds several.")
 @click.option("--iso", is_flag=True, help="All areal parameters of ISO 25178-2 that Faying has.")
-@click.option("--self-test", "test", is_flag=True, help="Correct for bias by synthetic surfaces made like this one.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
 @click.option("--plot", type=NamedPath(dir_okay=False), help="Write a figure (png, pdf, svg).")
 def command(
@@ -37,7 +36,6 @@ def command(
     degree: int,
     keep_spikes: bool,
     iso: bool,
-    test: bool,
     as_json: bool,
     plot: str | None,
     **given: str | None,
@@ -56,7 +54,7 @@ def command(
         raise InputError("--iso is for scans; the parameters of a profile (ISO 21920-2) stand without it")
     ready = prepared(scan, degree=degree, spikes=not keep_spikes)
     methods = tuple(METHODS) if method == "all" else (method,)
-    fits = fit_all(scan, methods=methods, self_test=test, degree=degree, spikes=not keep_spikes)
+    fits = fit_all(scan, methods=methods, degree=degree, spikes=not keep_spikes)
     document = describe(scan, ready, roughness(ready), fits)
     if iso:
         areal = ArealParameters.of(ready)

@@ -1,7 +1,7 @@
 """What the estimators share that read D from how a local measure scales with size.
 
 Each returns D and, through its closed transfer function, ln of the density S(f) = B f^-(7-2D). The interval comes from
-the spread between parts of the scan, Student's t; it holds no bias, see `selftest`.
+the spread between parts of the scan, Student's t; it holds no bias.
 """
 
 from collections.abc import Callable, Sequence
@@ -66,7 +66,7 @@ def through_parts(ready: Prepared, c: float, local: Local, sizes: tuple[float, f
         pivot,
         c,
         band=(low, high),
-        notes=("the interval is the spread between parts of the scan without a bias; --self-test measures the bias",),
+        notes=("the interval is the spread between parts of the scan without a bias: psd states both",),
     )
 
 

@@ -173,7 +173,7 @@ def by_box(ready: Prepared, limits: Limits, c: float) -> Estimate:
         return D, log(max(float(square), 1e-300)) - (6 - 2 * D) * log(gap * step) - k
 
     found = through_parts(ready, c, local, size_band(ready, limits, 2, 1 / 8), "box counting")
-    words = "box counting is known to be off by 0.1 and more in D: quote other methods too, or use --self-test"
+    words = "box counting is known to be off by 0.1 and more in D: quote other methods too"
     return replace(found, notes=(*found.notes, words))
 
 
