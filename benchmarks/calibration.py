@@ -49,7 +49,8 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
 
-    from faying.case.scatter import assumed
+    from faying.case.case import build, surfaces_of
+    from faying.case.scatter import with_assumed
     from faying.distribution import Distribution
     from faying.identify.identify import identify_model, points_for
     from faying.identify.noise import DISCREPANCY_SD, TEST_SD
@@ -63,7 +64,8 @@ def main():
     study, more, waves = Study.read(given.study), [], []
     if given.waves:
         silent = [replace(joint, form=None, tangential="mindlin") for joint in study.joints]
-        found = assumed(replace(study, joints=tuple(silent))).inputs
+        bare = replace(study, joints=tuple(silent), uncertain=None)
+        found = with_assumed(bare, build(bare), surfaces_of(bare)).inputs
         waves = [one for one in found if ".waviness" in one.key]
         more = [one for one in found if one.key.endswith(".tangential")]
         modulus = study.materials[next(iter(study.parts.values()))].E

@@ -16,6 +16,7 @@ from faying.case.case import Case, Progress
 from faying.case.changed import ChangedCase, frequencies_of
 from faying.case.engine import engine_of
 from faying.case.mesh_error import mesh_error
+from faying.case.scatter import known_of
 from faying.case.solve import solve
 from faying.numerics.follow import same_group
 from tests.helpers.meshfiles import LOW_AND_HIGH, abaqus
@@ -149,7 +150,7 @@ def test_twins_have_one_interval_that_holds_them_under_other_waves(solved):
     """Waves are nowhere alike: the two modes that lie most in the plane of twins are both in their interval."""
     _, case, states, _ = solved
     interval = intervals(case, states, None)[1].between(*bounds(case)[0])
-    full = solved_with(case, laws=_laws(case, 1, 1), gaps=Draws.of(case).gaps(case, 17))
+    full = solved_with(case, laws=_laws(case, known_of(case)), gaps=Draws.of(case, known_of(case)).gaps(case, 17))
     shapes, moved, M = shapes_of(case, states[0]), shapes_of(case, full), case.structure.dynamic_matrices[1]
     alike = (shapes.T @ (M @ moved)) ** 2
     groups = same_group(states[0].damped.frequencies)

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import faying
+from faying.case.case import Case
 from faying.case.law_range import law_range
-from faying.case.scatter import assumed
+from faying.case.scatter import known_of
 from faying.errors import InputError
 from faying.result.interval_figure import intervals
 from faying.study import Study
@@ -149,14 +150,14 @@ def test_the_figure_has_a_bar_from_5_to_95_percent_of_each_mode(plain):
 
 def test_a_prediction_takes_the_same_table_where_the_study_says_nothing(tmp_path):
     found = Study.read(study(tmp_path))
-    keys = {one.key: one.distribution for one in assumed(found).inputs}
+    keys = known_of(Case.of(found))
     assert set(keys) == {"joint.stiffness", "joint.tangential", *(f"bolt.{bolt.name}.factor" for bolt in found.bolts)}
     assert keys["joint.stiffness"] == law_range("JK").of(soft=False)
     # faces of which nothing is said have waves, with a draw of their own in each sample, where the mesh carries them
     silent = replace(found, joints=tuple(replace(joint, form=None) for joint in found.joints))
-    assert {one.key for one in assumed(silent).inputs} == set(keys)
+    assert set(known_of(Case.of(silent))) == set(keys)
     studies.write(tmp_path / "finer.toml", flat=False)
     finer = Study.read(tmp_path / "finer.toml")
     name = finer.joints[0].name
     waves = {f"joint.{name}.form.waviness", f"joint.{name}.form.waviness_seed"}
-    assert waves <= {one.key for one in assumed(finer).inputs}
+    assert waves <= set(known_of(Case.of(finer)))

@@ -107,5 +107,5 @@ def test_the_best_estimate_has_the_medians_of_the_law_in_every_draw():
     medians = draws * np.array([0.5, 0.8, 1.0, 1.3])[:, None, None]
     band = WaveBand(seeds=(0, 1, 2, 3), frequencies=draws, rms=np.zeros(1), ends=np.zeros((1, 2)))
     joints = Joints(band=band, medians=list(zip(draws, medians, strict=True)))
-    best = _combined(SimpleNamespace(study=study, loads=np.ones(1)), states, None, None, joints).best
+    best = _combined(SimpleNamespace(study=study, loads=np.ones(1)), {}, states, None, None, joints).best
     assert best == pytest.approx(np.exp(np.log(medians).mean(axis=0)), rel=1e-12)

@@ -13,10 +13,10 @@ import pytest
 from scipy.stats import t as student
 
 import faying
-from faying.answer.interval import law_factors, law_notes
+from faying.answer.interval import law_notes, of_each
 from faying.case.case import Case, checked_mesh, surfaces_of
-from faying.case.law_range import is_soft, law_range, of_joint, of_joints
-from faying.case.scatter import assumed
+from faying.case.law_range import is_soft, law_range, of_joint
+from faying.case.scatter import known_of
 from faying.contact.build import kinds
 from faying.contact.measured_range import OF_CURVES as MEASURED
 from faying.contact.models.jk import JK
@@ -149,7 +149,7 @@ def test_joints_get_the_range_of_their_law_and_metals(tmp_path):
     assert study.law_of(joint).model == "auto"
     jk = LAW_RANGES["JK"]  # the default of a study with D and G, where there is no map to solve
     assert of_joint(study, mesh, joint, surface) == jk.of(soft=False)
-    assert of_joints(study) == [jk.of(soft=False)]
+    assert known_of(Case.of(study))["joint.stiffness"] == jk.of(soft=False)
     part = sorted(study.parts)[0]
     mixed = replace(
         study,
@@ -158,14 +158,13 @@ def test_joints_get_the_range_of_their_law_and_metals(tmp_path):
     )
     soft = jk.of(soft=True)
     assert of_joint(mixed, mesh, joint, surface) == soft
-    assert of_joints(mixed) == [soft]
-    keys = {one.key: one.distribution for one in assumed(mixed).inputs}
-    assert keys["joint.stiffness"] == soft
+    assert known_of(Case.of(mixed))["joint.stiffness"] == soft
 
 
 def test_the_default_law_of_a_map_has_the_range_of_the_solved_contact():
     study = Study.read(ROOT / "examples" / "t-specimen" / "study.toml")
-    assert of_joints(study) == [SOLVED.of(soft=False)]
+    (joint,), mesh, (surface,) = study.joints, checked_mesh(study), surfaces_of(study)
+    assert of_joint(study, mesh, joint, surface) == SOLVED.of(soft=False)
 
 
 def test_laws_without_measurements_and_measured_curves():
@@ -179,15 +178,18 @@ def test_a_law_that_was_not_compared_says_so_and_has_no_number(monkeypatch):
     """The file of a law declares its range; without one there is a note in words, and no factor anywhere."""
     study = Study.read(ROOT / "examples" / "two-blocks" / "study.toml")
     case = Case.of(study)
-    (note,) = law_notes(case)
-    assert (note.code, of_joints(study)) == ("law-off", [LAW_RANGES["JK"].of(soft=False)])
+    known = known_of(case)
+    (note,) = law_notes(case, known)
+    assert (note.code, known["joint.stiffness"]) == ("law-off", LAW_RANGES["JK"].of(soft=False))
     monkeypatch.setattr(JK, "measured_ranges", {})
-    (note,) = law_notes(case)
+    known = known_of(case)
+    (note,) = law_notes(case, known)
     assert (note.code, note.severity) == ("law-not-compared", "limit")
     assert "JK was not compared with measurements" in note.text
     assert not re.search(r"\d", note.text)
-    assert of_joints(study) == law_factors(case) == [None]
-    assert not any(one.key.endswith("stiffness") for one in assumed(study).inputs)
+    assert of_each(case, known, "stiffness") == [None]
+    assert not any(key.endswith("stiffness") for key in known)
     given = replace(study, uncertain=UncertainChoice(inputs=(Input(key="joint.stiffness", distribution=ONE, unit=""),)))
-    stated = law_factors(replace(case, study=given))
+    changed = replace(case, study=given)
+    stated = of_each(changed, known_of(changed), "stiffness")
     assert stated == [pytest.approx(ONE.quantile(np.array([0.05, 0.5, 0.95])).tolist())]

@@ -8,20 +8,23 @@ import numpy as np
 import pytest
 
 import faying
-from faying.answer.interval import intervals
+from faying.answer.interval import elastic_modes, intervals
 from faying.answer.run import run
 from faying.case.bounds import bounds
 from faying.case.case import Case, Progress
 from faying.case.engine import engine_of
 from faying.case.part_tests import BALANCE_SD, LEAST_SD, KnownParts, PartAlone, PartFactors, energy_shares, same_modes
 from faying.case.solve import solve
+from faying.distribution import Distribution
 from faying.joint.structure import Structure
 from faying.measured.frf import Dof
 from faying.measured.modes import ModeSet
 from faying.measured.uff_write import write_uff
 from faying.numerics.follow import follow
 from faying.result.interval import Interval
+from faying.study.keys import test as keys
 from faying.study.keys.material import PartTestChoice
+from faying.study.keys.uncertain import Input
 from tests.helpers.meshfiles import LOW_AND_HIGH, abaqus
 from tests.helpers.plates import STEEL, plates, stacked
 
@@ -176,14 +179,13 @@ def test_weight_alone_moves_the_best_estimate_by_half_of_it(assembly):
 def test_a_part_that_weighs_something_else_is_noted(assembly):
     case, states, _, _ = assembly
     study = replace(case.study, part_tests={"low": PartTestChoice(mass=1.3 * case.structure.part_masses[0])})
-    known = KnownParts.of(replace(case, study=study), states)
+    known = KnownParts.of(study, case.structure, [elastic_modes(case, one) for one in states])
     assert [note.code for note in known.notes()] == ["part-test", "part-mass"]
 
 
 def test_the_shares_of_energy_of_bonded_parts_sum_to_one():
     mesh = stacked().bonded_at(("low.top", "high.bottom"))
-    case, parts, state = shares_of(Structure(mesh, STEEL, []), None)
-    strain, kinetic, others = energy_shares(case, parts, state)
+    strain, kinetic, others = energy_shares(*shares_of(Structure(mesh, STEEL, []), None))
     np.testing.assert_allclose(strain.sum(axis=0), 1, rtol=1e-6)
     np.testing.assert_allclose(kinetic.sum(axis=0), 1, rtol=1e-6)
     np.testing.assert_allclose(others, 0, atol=1e-6)
@@ -193,12 +195,12 @@ def test_the_shares_of_energy_of_bonded_parts_sum_to_one():
 def test_half_of_a_share_is_what_a_factor_moves_a_mode_by(change):
     """d ln f = (kappa d ln E - mu d ln rho) / 2 of one part, against two solutions with a joint between the parts."""
     bolt = faying.Bolt(faces=("high.top", "low.bottom"), name="bolt")
-    case, parts, state = shares_of(plates(bolts=(bolt,)), 5e3)
-    strain, kinetic, _ = energy_shares(case, parts, state)
+    structure, *rest = shares_of(plates(bolts=(bolt,)), 5e3)
+    strain, kinetic, _ = energy_shares(structure, *rest)
     both = []
     for factor in (0.99, 1.01):
         other = replace(STEEL, **{change: getattr(STEEL, change) * factor})
-        made = replace(case.structure, materials={"low": other, "high": STEEL})
+        made = replace(structure, materials={"low": other, "high": STEEL})
         both.append(made.solve(5e3, modes=6).modes.frequencies)
     moved = np.log(both[1] / both[0]) / np.log(1.01 / 0.99)
     expected = strain[0] / 2 if change == "E" else -kinetic[0] / 2
@@ -206,16 +208,18 @@ def test_half_of_a_share_is_what_a_factor_moves_a_mode_by(change):
 
 
 def shares_of(structure, preload):
-    """A structure, its parts alone and its state, as `energy_shares` takes them."""
+    """A structure, its parts alone, its frequencies and its shapes, as `energy_shares` takes them."""
     state = structure.solve(preload, modes=6)
     parts = [SimpleNamespace(name=name, structure=structure.alone(name)) for name in structure.mesh.parts]
-    case = SimpleNamespace(structure=structure, rigid_count=structure.rigid_count)
-    return case, parts, SimpleNamespace(damped=state.vibration.damped, modes=state.vibration.modes)
+    elastic = slice(structure.rigid_count, structure.rigid_count + len(state.vibration.damped.frequencies))
+    modes = state.vibration.modes
+    return structure, parts, modes.frequencies[elastic], modes.shapes[:, elastic]
 
 
 def narrowed(case, states, interval, tests, ends=(None, None)):
     """The interval with tests of parts, from that without."""
-    known = KnownParts.of(replace(case, study=replace(case.study, part_tests=tests)), states)
+    study = replace(case.study, part_tests=tests)
+    known = KnownParts.of(study, case.structure, [elastic_modes(case, one) for one in states])
     offsets, moved = known.instead(dict(zip(interval.sources, interval.offsets, strict=True)))
     return Interval.about(interval.best * np.exp(moved), offsets, moved).between(*ends)
 
@@ -263,3 +267,56 @@ def test_intervals_after_the_parts_tests_hold_the_truth_of_fifty_twins(assembly)
     of_law = np.abs(law[1] - law[0])
     assert np.all(np.median(widths, axis=0)[of_law < 0.03] < 0.04)
     assert np.sum(of_law < 0.03) >= 4
+
+
+def rung(case, stiffer: float, heavier: float) -> dict[str, PartTestChoice]:
+    """Tests of both plates of a case, all of whose steel is stiffer and heavier by these factors."""
+    tests = {}
+    for name in case.structure.mesh.parts:
+        alone = PartAlone(name=name, structure=case.structure.alone(name), test=PartTestChoice())
+        frequencies, errors = alone.modes(8)
+        true = frequencies * (1 - errors) * np.sqrt(stiffer / heavier)
+        tests[name] = PartTestChoice(mass=heavier * alone.structure.mass, frequencies=tuple(true))
+    return tests
+
+
+def test_a_run_and_a_prediction_have_one_interval_after_the_tests_of_parts(assembly):
+    """E 6 % above and mass 2 % above the model: the tests say more than what is listed of E, which is their prior."""
+    case, states, before, _ = assembly
+    normal = Distribution(kind="normal", centre=2.1e11, spread=4e9)
+    E = Input(key="material.45 steel.E", distribution=normal, unit="Pa")
+    uncertain = replace(case.study.uncertain, inputs=(*case.study.uncertain.inputs, E))
+    study = replace(case.study, part_tests=rung(case, 1.06, 1.02), uncertain=uncertain)
+    stated = intervals(replace(case, study=study), states, None)[1]
+    found = faying.predict(study, samples=128)
+    drawn = found.quantiles((0.05, 0.5, 0.95)).frequencies
+    for ours, theirs in zip((stated.low, stated.best, stated.high), drawn, strict=True):
+        assert np.all(np.abs(ours - theirs) < 0.1 * (stated.high - stated.low))
+    assert np.all(stated.width < 0.7 * before.width)
+    assert {note.code for note in found.notes} >= {"part-test"}
+
+
+@pytest.mark.slow  # two identifications
+def test_an_identification_moves_the_model_by_the_tests_of_its_parts(assembly):
+    """A twin of steel 6 % stiffer, whose joint is as modelled: without the parts' tests the joint takes the blame."""
+    case, _, _, _ = assembly
+    stiff = {name: replace(one, E=1.06 * one.E) for name, one in case.study.materials.items()}
+    truth = run(replace(case.study, materials=stiff)).frequencies
+    test = keys.TestChoice(
+        source="twin",
+        frequencies=tuple(map(tuple, truth)),
+        published=None,
+        published_name="",
+        kind="model",
+        direction=(1, 1, 1),
+        points=((0.0, 0.0, 0.02), (0.12, 0.03, 0.02)),
+        threshold=0.02,
+    )
+    plan = replace(case.study, test=test)
+    inputs = tuple(one for one in plan.uncertain.inputs if one.key == "joint.stiffness")
+    plan = replace(plan, uncertain=replace(plan.uncertain, inputs=inputs))
+    off = []
+    for tests in ({}, rung(case, 1.06, 1.0)):
+        found = faying.identify(replace(plan, part_tests=tests))
+        off.append(abs(np.log(np.median(found.samples[:, 0]))))
+    assert off[1] < 0.5 * off[0]

@@ -4,6 +4,7 @@ import csv
 from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,17 @@ import faying
 from faying.answer.interval import Draws, _preload_factors
 from faying.case.case import Case
 from faying.case.level_damping import REST
-from faying.case.scatter import SCORE, default, discrepancy, force_factors, mode_sd, structure_sd, with_assumed
+from faying.case.scatter import (
+    SCORE,
+    default,
+    discrepancy,
+    force_factors,
+    known_of,
+    mode_sd,
+    stated,
+    structure_sd,
+    with_assumed,
+)
 from faying.study import Study
 from tests.helpers.meshfiles import LOW_AND_HIGH, abaqus
 from tests.helpers.plates import stacked
@@ -75,7 +86,7 @@ def listed(lines: str, tmp_path, study: str = "study.toml") -> Study:
 
 
 def keys(study: Study) -> set[str]:
-    return {one.key for one in with_assumed(study).inputs}
+    return set(known_of(Case.of(study)))
 
 
 def test_what_is_listed_takes_the_place_of_that_alone(tmp_path):
@@ -93,7 +104,7 @@ def test_what_is_listed_takes_the_place_of_that_alone(tmp_path):
 
 def test_only_leaves_out_what_is_assumed(tmp_path):
     study = listed('only = true\nE = "200 GPa +- 2 GPa"', tmp_path)
-    assert [one.key for one in with_assumed(study).inputs] == [one.key for one in study.uncertain.inputs]
+    assert known_of(Case.of(study)) == stated(study.uncertain)
 
 
 def test_the_structure_can_be_known_better(tmp_path):
@@ -106,10 +117,18 @@ def test_a_joint_that_is_listed_leaves_the_others_as_assumed(tmp_path):
     study = listed("", tmp_path)
     joint = study.joints[0]
     two = replace(study, joints=(joint, replace(joint, name="other", number=2)), uncertain=None)
-    common = {one.key for one in with_assumed(two).inputs}
-    assert "joint.stiffness" in common
+    case = Case.of(study)
+    structure = SimpleNamespace(mesh=case.structure.mesh, joints=2 * case.structure.joints)
+
+    def known(plan: Study) -> set[str]:
+        return {one.key for one in with_assumed(plan, structure, 2 * case.surfaces).inputs}
+
+    common = known(two)
+    assert {"joint.stiffness", "joint.tangential"} <= common
+    given = replace(two, joints=(replace(joint, tangential=0.6), two.joints[1]))
+    assert known(given) == common - {"joint.tangential"} | {"joint.other.tangential"}
     one = listed(f'joint."{joint.name}".stiffness = "0.5 to 2"', tmp_path).uncertain
-    found = {one.key for one in with_assumed(replace(two, uncertain=one)).inputs}
+    found = known(replace(two, uncertain=one))
     assert found == common - {"joint.stiffness"} | {f"joint.{joint.name}.stiffness", "joint.other.stiffness"}
 
 
@@ -156,8 +175,9 @@ def test_a_prediction_draws_waves_where_a_run_draws_them(tmp_path, rise):
     (tmp_path / "model.inp").write_text(abaqus(replace(flat, points=points)))
     (tmp_path / "study.toml").write_text(CURVED)
     study = Study.read(tmp_path / "study.toml")
+    case = Case.of(study)
     drawn = any(one.endswith("waviness_seed") for one in keys(study))
-    assert drawn == bool(Draws.of(Case.of(study)).drawn) == (rise == 0.0)
+    assert drawn == bool(Draws.of(case, known_of(case)).drawn) == (rise == 0.0)
     if rise:
         found = faying.predict(study, samples=8)
         assert found.answered == 8
@@ -178,7 +198,9 @@ def test_a_bolt_scatters_as_the_study_says_else_by_the_default_way(tmp_path, lin
     (tmp_path / "model.inp").write_text(abaqus(stacked()))
     (tmp_path / "study.toml").write_text(f"{CURVED}[uncertain]\n{lines}\n")
     study = Study.read(tmp_path / "study.toml")
-    assert force_factors(study, study.bolts[0].name, np.array([0.05, 0.95])) == pytest.approx(ends, abs=1e-4)
+    assert force_factors(known_of(Case.of(study)), study.bolts[0].name, np.array([0.05, 0.95])) == pytest.approx(
+        ends, abs=1e-4
+    )
 
 
 def test_a_bolt_that_is_not_listed_scatters_by_default_in_an_interval(tmp_path):
@@ -192,4 +214,4 @@ def test_a_bolt_that_is_not_listed_scatters_by_default_in_an_interval(tmp_path):
     listed = '[uncertain]\nbolt."2".factor = "1 +- 0.025"\n'
     (tmp_path / "study.toml").write_text(f"{head}{bolt.format(2)}{bolt.format(6)}{tail}{listed}")
     case = Case.of(Study.read(tmp_path / "study.toml"))
-    assert _preload_factors(case) == pytest.approx((1 - 0.14 * SCORE, 1, 1 + 0.14 * SCORE), abs=1e-4)
+    assert _preload_factors(case, known_of(case)) == pytest.approx((1 - 0.14 * SCORE, 1, 1 + 0.14 * SCORE), abs=1e-4)

@@ -427,7 +427,6 @@ FIGURES = {
     "identify/prediction.py:intervals": lambda: predicting.intervals(prediction()),
     "identify/prediction.py:plot": lambda: whole(prediction().plot()),
     "identify/prediction.py:tornado": lambda: predicting.tornado(prediction()),
-    "identify/prediction.py:scatter_matrix": lambda: predicting.scatter_matrix(prediction()),
     "identify/prediction.py:backbones": lambda: predicting.backbones(prediction()),
     "identify/identification.py:figure": lambda: identification(found()),
     "identify/identification.py:plot": lambda: whole(found().plot()),

@@ -8,15 +8,25 @@ import numpy as np
 
 from faying.case.case import Case
 from faying.case.changed import ChangedCase, can_change, frequencies_of
-from faying.case.ends import quantiles, ratios_of
-from faying.case.law_range import of_joint
 from faying.case.mesh_error import MeshError
 from faying.case.part_tests import KnownParts
-from faying.case.scatter import LEVELS, SCATTER, SCORE, force_factors, lists_waves, mode_sd, stated, structure_sd
+from faying.case.scatter import (
+    LEVELS,
+    ONE_EACH_WAY,
+    SCATTER,
+    SCORE,
+    Known,
+    force_factors,
+    known_of,
+    mode_sd,
+    of_number,
+    stated,
+    structure_sd,
+)
 from faying.case.solve import LoadedCase
-from faying.case.waves import drawn_on
+from faying.case.waves import JointPlacement, drawn_on, form_of
 from faying.errors import NotConverged
-from faying.form.face_axes import FaceAxes
+from faying.form.form import Form
 from faying.form.waviness import ASSUMED_GAP, LaidWaves
 from faying.joint.joint_law import JointLaw
 from faying.notes import INCOMPLETE, Note, joint_names
@@ -57,21 +67,20 @@ class WaveBand:
 
 @dataclass(frozen=True, kw_only=True)
 class _Wavy:
-    """A joint on which waves are drawn: its gap without waves (q,) [m], and the waves, whose seed varies.
+    """A joint on which waves are drawn: its form, whose seed varies, and its waves on the mesh.
 
     own: the seed of the draw that the case has; None where it has none.
     """
 
-    positions: Array
-    weights: Array
-    base: Array
-    axes: FaceAxes
+    place: JointPlacement
+    form: Form
     laid: LaidWaves
     own: int | None
 
     def gap(self, seed: int) -> Array:
-        waves = replace(self.laid, waves=replace(self.laid.waves, seed=seed))
-        return self.base + waves.gap(self.positions, self.axes, self.weights)
+        """Gap (q,) [m] in one draw."""
+        assert self.form.waviness is not None
+        return self.place.gap(replace(self.form, waviness=replace(self.form.waviness, seed=seed)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,9 +91,9 @@ class Draws:
     seeds: tuple[int, ...] = tuple(range(DRAWS))
 
     @classmethod
-    def of(cls, case: Case) -> "Draws":
-        """The draws of a case."""
-        return cls(wavy=_wavy(case))
+    def of(cls, case: Case, known: Known) -> "Draws":
+        """The draws of a case of which so much scatters."""
+        return cls(wavy=_wavy(case, known))
 
     @property
     def drawn(self) -> tuple[int, ...]:
@@ -134,33 +143,21 @@ class Draws:
         return [Note(code="waves-assumed", text=text)]
 
 
-def _wavy(case: Case) -> list[_Wavy | None]:
+def _wavy(case: Case, known: Known) -> list[_Wavy | None]:
     """Where waves are drawn on each joint; None where it stays as it is."""
-    study, structure, out = case.study, case.structure, list[_Wavy | None]()
-    for joint, choice, surface in zip(structure.joints, study.joints, case.surfaces, strict=True):
-        interface = joint.interface
-        found = drawn_on(study, structure.mesh, choice, interface, surface)
-        if found is None or not (study.assumes_scatter or lists_waves(study.uncertain, choice.name)):
+    study, mesh, out = case.study, case.structure.mesh, list[_Wavy | None]()
+    for joint, choice, surface in zip(case.structure.joints, study.joints, case.surfaces, strict=True):
+        laid = drawn_on(study, mesh, choice, joint.interface, surface)
+        if laid is None or of_number(known, choice.name, "form.waviness_seed") is None:
             out.append(None)
             continue
-        axes, laid = found
-        silent = choice.form is None
-        given = 0.0 if silent else laid.gap(interface.positions, axes, interface.weights)
-        out.append(
-            _Wavy(
-                positions=interface.positions,
-                weights=interface.weights,
-                base=interface.gap - given,
-                axes=axes,
-                laid=laid,
-                own=None if silent else laid.waves.seed,
-            )
-        )
+        place = JointPlacement.of(mesh, choice, joint.interface, surface)
+        own = None if choice.form is None else laid.waves.seed
+        out.append(_Wavy(place=place, form=form_of(choice, surface), laid=laid, own=own))
     return out
 
 
 Found = Array | NotConverged  # frequencies [Hz] (loads, m) of a change, or why it has none
-ONE_EACH_WAY = np.array([-1.0, 1.0])[:, None, None]
 NOTED_RATIO = 2.0  # factor between measured stiffness and a law that is noted
 
 
@@ -194,21 +191,22 @@ def intervals(
     """
     if not case.study.modes.intervals:
         return None, None, []
-    parts = KnownParts.of(case, states)
-    known = [] if parts is None else list(parts.notes())
+    parts = KnownParts.of(case.study, case.structure, [elastic_modes(case, state) for state in states])
+    of_parts = [] if parts is None else list(parts.notes())
+    known = known_of(case)
     if not case.structure.joints or not can_change(case):
         text = (
             f"the intervals do not contain law, k_t/k_n, {'preload ' * (len(case.loads) == 1)}and waves, which are "
             "found for bolts pulled at once, springs per area and hysteretic damping"
         )
-        lost = [Note(code=INCOMPLETE, text=text), *law_notes(case)] if case.structure.joints else []
-        return None, _combined(case, states, mesh, parts, Joints()), [*lost, *known]
-    draws = Draws.of(case)
+        lost = [Note(code=INCOMPLETE, text=text), *law_notes(case, known)] if case.structure.joints else []
+        return None, _combined(case, known, states, mesh, parts, Joints()), [*lost, *of_parts]
+    draws = Draws.of(case, known)
     plain = ChangedCase.nothing(case)
     waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
-    laws, (_, factor, _) = _laws(case), _preload_factors(case)
+    laws, (_, factor, _) = _laws(case, known), _preload_factors(case, known)
     medians = [replace(one, laws=laws, factor=factor) for one in waves or [plain]]
-    ends = _ends(case, medians[0])
+    ends = _ends(case, known, medians[0])
     changes = [*waves, *medians, *(one for pair in ends.values() for one in pair)]
     # modes of a draw under the medians are those of the draw, and those of the ends are those of the first median
     after = [*[None] * len(waves), *(range(len(waves)) or [None]), *[len(waves)] * (2 * len(ends))]
@@ -222,32 +220,40 @@ def intervals(
     ]
     of_about = f"{', '.join(pairs)} and their medians"
     lost = [*_incomplete({"draws of waves": of_draws, of_about: of_medians[:1], **pairs})]
-    return band, _combined(case, states, mesh, parts, of_joints), [*lost, *known, *draws.notes(case), *law_notes(case)]
+    notes = [*lost, *of_parts, *draws.notes(case), *law_notes(case, known)]
+    return band, _combined(case, known, states, mesh, parts, of_joints), notes
 
 
-def _laws(case: Case, factor: int = 1, ratio: int = 1) -> list[JointLaw]:
+def elastic_modes(case: Case, state: LoadedCase) -> tuple[Array, Array]:
+    """Frequencies [Hz] (m,) and shapes (n, m) of the modes of a state that have an interval."""
+    elastic = slice(case.rigid_count, case.rigid_count + len(state.damped.frequencies))
+    return state.modes.frequencies[elastic], state.modes.shapes[:, elastic]
+
+
+def _laws(case: Case, known: Known, factor: int = 1, ratio: int = 1) -> list[JointLaw]:
     """The law of each joint at 5, 50 or 95 % (0, 1, 2) of the factor on its stiffness and of k_t/k_n."""
     out = []
-    for joint, factors in zip(case.structure.joints, law_factors(case), strict=True):
-        ratios = ratios_of(case, joint)
-        law = replace(joint.law, tangential=ratios[ratio]) if ratios[0] < ratios[2] else joint.law
+    scatter = of_each(case, known, "stiffness"), of_each(case, known, "tangential")
+    for joint, factors, ratios in zip(case.structure.joints, *scatter, strict=True):
+        law = replace(joint.law, tangential=ratios[ratio]) if ratios else joint.law
         out.append(law.scaled(factors[factor]) if factors else law)
     return out
 
 
-def _ends(case: Case, middle: ChangedCase) -> dict[str, tuple[ChangedCase, ChangedCase]]:
+def _ends(case: Case, known: Known, middle: ChangedCase) -> dict[str, tuple[ChangedCase, ChangedCase]]:
     """Both ends of what moves the joints, about a draw of waves with the medians of the law and of k_t/k_n.
 
     Faces without waves under Mindlin's ratio are the stiffest that they can be: there a law would hardly matter.
     """
     out: dict[str, tuple[ChangedCase, ChangedCase]] = {}
-    if any(law_factors(case)):
-        out["law"] = replace(middle, laws=_laws(case, factor=0)), replace(middle, laws=_laws(case, factor=2))
-    if any(low < high for low, _, high in (ratios_of(case, joint) for joint in case.structure.joints)):
-        out["k_t/k_n"] = replace(middle, laws=_laws(case, ratio=0)), replace(middle, laws=_laws(case, ratio=2))
-    low, _, high = _preload_factors(case)
-    if len(case.loads) == 1 and low < high:
-        out["preload"] = replace(middle, factor=low), replace(middle, factor=high)
+    if any(of_each(case, known, "stiffness")):
+        out["law"] = replace(middle, laws=_laws(case, known, 0)), replace(middle, laws=_laws(case, known, 2))
+    if any(of_each(case, known, "tangential")):
+        low, high = (replace(middle, laws=_laws(case, known, ratio=end)) for end in (0, 2))
+        out["k_t/k_n"] = low, high
+    least, _, most = _preload_factors(case, known)
+    if len(case.loads) == 1 and least < most:
+        out["preload"] = replace(middle, factor=least), replace(middle, factor=most)
     return out
 
 
@@ -260,31 +266,31 @@ def _incomplete(found: Mapping[str, Sequence[Found]]) -> Iterator[Note]:
             yield Note(code=INCOMPLETE, text=f"the intervals do not contain {what}, which found no answer: {faults[0]}")
 
 
-def law_factors(case: Case) -> list[tuple[float, float, float] | None]:
-    """5, 50 and 95 % of the factor on the stiffness of each joint; None of a law that was not compared."""
-    study, mesh = case.study, case.structure.mesh
-    return [
-        quantiles(case, f"joint.{joint.name}.stiffness", "joint.stiffness", of_joint(study, mesh, joint, surface))
-        for joint, surface in zip(study.joints, case.surfaces, strict=True)
-    ]
+def of_each(case: Case, known: Known, name: str) -> list[tuple[float, float, float] | None]:
+    """5, 50 and 95 % of a number of each joint; None where it does not scatter."""
+    out = list[tuple[float, float, float] | None]()
+    for joint in case.study.joints:
+        found = of_number(known, joint.name, name)
+        low, middle, high = LEVELS if found is None else found.quantile(LEVELS)
+        out.append(None if found is None else (float(low), float(middle), float(high)))
+    return out
 
 
-def law_notes(case: Case) -> Iterator[Note]:
+def law_notes(case: Case, known: Known) -> Iterator[Note]:
     """Say where measured joints have less than half or more than twice the stiffness of the law in the median.
 
     And which laws were not compared with measurements.
     """
     unknown: dict[str, list[str]] = {}
     found: dict[tuple[str, tuple[float, float, float]], list[str]] = {}
-    known = stated(case.study.uncertain)
+    listed = stated(case.study.uncertain)
     laws = [joint.law for joint in case.structure.joints]
-    for joint, law, factors in zip(case.study.joints, laws, law_factors(case), strict=True):
+    for joint, law, factors in zip(case.study.joints, laws, of_each(case, known, "stiffness"), strict=True):
         if factors is None:
             if case.study.assumes_scatter:
                 unknown.setdefault(law.model.name, []).append(joint.name)
             continue
-        given = f"joint.{joint.name}.stiffness" in known or "joint.stiffness" in known
-        if not (given or 1 / NOTED_RATIO <= factors[1] <= NOTED_RATIO):
+        if not (of_number(listed, joint.name, "stiffness") or 1 / NOTED_RATIO <= factors[1] <= NOTED_RATIO):
             found.setdefault((law.model.name, factors), []).append(joint.name)
     for name, names in unknown.items():
         text = (
@@ -302,7 +308,12 @@ def law_notes(case: Case) -> Iterator[Note]:
 
 
 def _combined(
-    case: Case, states: Sequence[LoadedCase], mesh: MeshError | None, parts: KnownParts | None, joints: Joints
+    case: Case,
+    known: Known,
+    states: Sequence[LoadedCase],
+    mesh: MeshError | None,
+    parts: KnownParts | None,
+    joints: Joints,
 ) -> Interval:
     """The interval of each frequency, by what each thing moves ln f (loads, m) from the best estimate.
 
@@ -332,7 +343,7 @@ def _combined(
         found["waves"] = SCORE * np.sqrt(of_group(logs.var(axis=0, ddof=1)) + split) * ONE_EACH_WAY
     if case.study.assumes_scatter and all(state.ends and "scan" in state.ends for state in states):
         found["scan"] = np.log(np.stack([(state.ends or {})["scan"] for state in states], axis=1) / f)
-    if len(states) > 1 and np.ptp(factors := _preload_factors(case)):
+    if len(states) > 1 and np.ptp(factors := _preload_factors(case, known)):
         curve = about if isinstance(about, np.ndarray) else f
         found["preload"] = _by_preload(case.loads, curve, factors)
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):
@@ -345,9 +356,9 @@ def _combined(
     return Interval.about(np.exp(of_group(np.log(f) + middle + moved)), named, of_group(moved))
 
 
-def _preload_factors(case: Case) -> tuple[float, float, float]:
+def _preload_factors(case: Case, known: Known) -> tuple[float, float, float]:
     """5, 50 and 95 % of a common factor on the preload of all bolts; of bolts that scatter apart the widest ends."""
-    ends = np.stack([force_factors(case.study, bolt.name, LEVELS) for bolt in case.study.bolts])
+    ends = np.stack([force_factors(known, bolt.name, LEVELS) for bolt in case.study.bolts])
     return float(ends[:, 0].min()), float(np.median(ends[:, 1])), float(ends[:, 2].max())
 
 

@@ -68,10 +68,11 @@ def frequencies_of(
         return [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
 
     variants = [loads_of(one) for one in changes]
-    starts = _trained(reduction, [[loads[k] for k in at] for loads in variants])
+    trained = reduction.train_each([[loads[k] for k in at] for loads in variants], TOLERANCE)
+    starts = [group if isinstance(group, NotConverged) else group[0].displacement for group in trained]
     solved = next((start for start in starts if not isinstance(start, NotConverged)), None)
     if solved is None:
-        return starts
+        return [one for one in starts if isinstance(one, NotConverged)]
     before = _at_loads(reduction, loads_of(ChangedCase.nothing(case)), solved)
     way = [np.arange(len(one.frequencies)) for one in before]  # of each mode of the states in those of `before`
     remembered = np.array([bool(state.preload.carried) for state in states])[:, None]
@@ -99,15 +100,3 @@ def frequencies_of(
 
 def _at_loads(reduction: Reduction, loads: Sequence[Gapped], start: Array) -> list[Variant]:
     return [reduction.at(one).evaluate(one.laws, one.forces, one.friction, start) for one in loads]
-
-
-def _trained(reduction: Reduction, every: Sequence[Sequence[Gapped]]) -> list[Array | NotConverged]:
-    """Train a basis on some variants of each change; coefficients of the first one's equilibrium, or why it has none.
-
-    Where they cannot be trained together, each change is trained alone, so that one without an answer loses none else.
-    """
-    try:
-        found = reduction.train_together([one for variants in every for one in variants], TOLERANCE)
-    except NotConverged as fault:
-        return [fault] if len(every) == 1 else [_trained(reduction, [variants])[0] for variants in every]
-    return [state.displacement for state in found[:: len(every[0])]]

@@ -1,6 +1,6 @@
 """How far the stiffness of joints lies from each law, by what was measured: the range of a law in every interval."""
 
-from faying.case.case import checked_mesh, materials_at, part_of, surfaces_of
+from faying.case.case import materials_at
 from faying.contact.build import AUTO, find
 from faying.contact.measured_range import MeasuredRange
 from faying.distribution import Distribution
@@ -34,24 +34,6 @@ def of_joint(study: Study, mesh: Mesh, joint: JointChoice, surface: Surface) -> 
     """The factor on the stiffness of a joint by its law and its two materials; None for a law that was not compared."""
     found = law_range(_label(study, joint, surface))
     return None if found is None else found.of(soft=is_soft(*materials_at(study, mesh, joint)))
-
-
-def of_joints(study: Study) -> list[Distribution | None]:
-    """The same of every joint, without a mesh; it is read where materials differ and a face does not name its part."""
-    kinds = {is_soft(material, material) for material in map(study.materials.__getitem__, study.parts.values())}
-    mesh, out = None, []
-    for joint, surface in zip(study.joints, surfaces_of(study), strict=True):
-        parts = [part_of(study, face) for face in joint.faces]
-        if len(kinds) == 1:
-            soft = kinds == {True}
-        elif None not in parts:
-            soft = is_soft(*(study.materials[study.parts[str(part)]] for part in parts))
-        else:
-            mesh = mesh or checked_mesh(study)
-            soft = is_soft(*materials_at(study, mesh, joint))
-        found = law_range(_label(study, joint, surface))
-        out.append(None if found is None else found.of(soft=soft))
-    return out
 
 
 def _label(study: Study, joint: JointChoice, surface: Surface) -> str:

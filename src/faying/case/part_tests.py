@@ -17,9 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.case.case import Case
-from faying.case.scatter import DENSITY_SD, SCORE, mode_sd, structure_sd
-from faying.case.solve import LoadedCase
+from faying.case.scatter import DENSITY_SD, ONE_EACH_WAY, SCORE, mode_sd, structure_sd
 from faying.fe.surplus import Surplus
 from faying.joint.assembled_parts import unknowns_of
 from faying.joint.modal import ModalProblem, ModesChoice
@@ -28,6 +26,7 @@ from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.numerics.follow import partners
 from faying.study.keys.material import PartTestChoice
+from faying.study.study import Study
 from faying.typing import Array, Index
 
 BALANCE_SD = 1e-3  # of ln of a weighed mass: a balance of 0.1 %, and what hangs on the part
@@ -147,15 +146,17 @@ def same_modes(ratios: Array, structure: float, mode: float) -> tuple[Index, Ind
 
 @dataclass(frozen=True, kw_only=True)
 class KnownParts:
-    """Parts of a case that were weighed or rung alone, and what each mode has of them.
+    """Parts of a structure that were weighed or rung alone, and what each mode has of them.
 
     Args:
+        study: Which has their tests.
         parts, factors: these (p), and what their tests say.
         strain, kinetic: share of the energy of each mode in each of them (p, loads, m) [-].
         others: share of the strain energy in parts without a test (loads, m) [-].
         all_rung: whether every part has measured modes.
     """
 
+    study: Study
     parts: tuple[PartAlone, ...]
     factors: tuple[PartFactors, ...]
     strain: Array
@@ -164,17 +165,20 @@ class KnownParts:
     all_rung: bool
 
     @classmethod
-    def of(cls, case: Case, states: Sequence[LoadedCase]) -> "KnownParts | None":
-        """Those of a case, solved under each load; None where no part has a test."""
-        study, structure = case.study, case.structure
+    def of(cls, study: Study, structure: Structure, modes: Sequence[tuple[Array, Array]]) -> "KnownParts | None":
+        """Those of a study; None where no part has a test.
+
+        modes: elastic modes under each load, their frequencies [Hz] (m,) and mass-normalised shapes (n, m).
+        """
         if not study.part_tests:
             return None
         tests = study.part_tests.items()
-        parts = tuple(PartAlone(name=name, structure=structure.alone(name), test=test) for name, test in tests)
+        parts = tuple(PartAlone(name=name, structure=structure.alone(name), test=test.read()) for name, test in tests)
         priors = structure_sd(study.uncertain), min(mode_sd(study.uncertain), PART_SD)
-        energies = [energy_shares(case, parts, state) for state in states]
+        energies = [energy_shares(structure, parts, *of_load) for of_load in modes]
         strain, kinetic, others = (np.stack(one) for one in zip(*energies, strict=True))
         return cls(
+            study=study,
             parts=parts,
             factors=tuple(part.factors(*priors) for part in parts),
             strain=strain.swapaxes(0, 1),
@@ -200,6 +204,13 @@ class KnownParts:
         found["parts" if self.all_rung else "structure"] = _added(structure * self.others, variance)
         found["mode"] = _added(mode * rest, own)
         return found, np.asarray(middle)
+
+    def left(self) -> tuple[Array, Array]:
+        """What the tests move ln f by (loads, m), and the standard deviation that is left of it, all modes' and own."""
+        ends = SCORE * ONE_EACH_WAY * np.ones(self.others.shape)
+        choice = self.study.uncertain
+        found, middle = self.instead({"structure": structure_sd(choice) * ends, "mode": mode_sd(choice) * ends})
+        return middle, np.hypot(*(high for _, high in found.values())) / SCORE
 
     def notes(self) -> Iterator[Note]:
         """What the test of each part says, and which of its modes the model does not have."""
@@ -228,15 +239,17 @@ def _added(prior: Array, variance: Any) -> Array:
     return np.stack([-half, half])
 
 
-def energy_shares(case: Case, parts: Sequence[PartAlone], state: LoadedCase) -> tuple[Array, Array, Array]:
-    """Shares [-] of some parts in the strain and the kinetic energy of modes (p, m); of other parts in strain (m,)."""
-    mesh, count = case.structure.mesh, len(state.damped.frequencies)
-    shapes = state.modes.shapes[:, case.rigid_count :][:, :count]
-    squares = (2 * np.pi * state.modes.frequencies[case.rigid_count :][:count]) ** 2
-    strain, kinetic = [], []
+def energy_shares(
+    structure: Structure, parts: Sequence[PartAlone], frequencies: Array, shapes: Array
+) -> tuple[Array, Array, Array]:
+    """Shares [-] of some parts in the strain and the kinetic energy of modes (p, m); of other parts in strain (m,).
+
+    frequencies, shapes: of elastic modes, [Hz] (m,) and mass-normalised (n, m).
+    """
+    squares, strain, kinetic = (2 * np.pi * frequencies) ** 2, [], []
     for part in parts:
-        own, (K, M) = shapes[unknowns_of(mesh.part_nodes(part.name))], part.structure.matrices
+        own, (K, M) = shapes[unknowns_of(structure.mesh.part_nodes(part.name))], part.structure.matrices
         strain.append(np.einsum("im,im->m", own, K @ own) / squares)
         kinetic.append(np.einsum("im,im->m", own, M @ own))
-    every = np.einsum("im,im->m", shapes, case.structure.matrices[0] @ shapes) / squares
+    every = np.einsum("im,im->m", shapes, structure.matrices[0] @ shapes) / squares
     return np.stack(strain), np.stack(kinetic), np.clip(every - np.sum(strain, axis=0), 0.0, 1.0)

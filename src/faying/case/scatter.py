@@ -1,6 +1,6 @@
 """What scatters in a bolted structure where the study says nothing of it: how far, and where that is known from."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot, sqrt
 from typing import final
@@ -8,13 +8,14 @@ from typing import final
 import numpy as np
 
 from faying.bolt.tightening import DEFAULT_WAY, TIGHTENING
-from faying.case.case import checked_mesh, interface_of, surfaces_of
-from faying.case.law_range import of_joints
+from faying.case.case import Case
+from faying.case.law_range import of_joint
 from faying.case.waves import drawn_on
 from faying.distribution import Distribution
 from faying.form.waviness import ASSUMED
+from faying.joint.structure import Structure
 from faying.study.keys.bolt_sheet import BoltSheetChoice
-from faying.study.keys.joint import JointChoice
+from faying.study.keys.surface import Surface
 from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice
 from faying.study.keys.varied import number_of
 from faying.study.study import Study
@@ -23,7 +24,9 @@ from faying.typing import Array
 LEVELS = np.array([0.05, 0.5, 0.95])
 ENDS = LEVELS[[0, 2]]
 TWO_SIGMA = 0.02275  # probability below two standard deviations
+Known = Mapping[str, Distribution]  # what scatters, by its key
 SCORE = 1.6449  # standard deviations from the median to these ends
+ONE_EACH_WAY = np.array([-1.0, 1.0])[:, None, None]  # of ends (2, loads, m) about a median
 OF_PARTS = ("E", "density")
 IN_INTERVALS = (*OF_PARTS, "stiffness", "tangential", "preload", "factor")  # what a run takes from [uncertain]
 # of ln f by E: half of the coefficient of variation 0.03 of steel, JCSS Probabilistic Model Code, part 3.2
@@ -109,37 +112,42 @@ def default(name: str) -> Distribution:
     return found
 
 
-def stated(choice: UncertainChoice | None) -> Mapping[str, Distribution]:
+def stated(choice: UncertainChoice | None) -> Known:
     """What [uncertain] says, by its key."""
     return {} if choice is None else {one.key: one.distribution for one in choice.inputs}
 
 
-def lists_waves(choice: UncertainChoice | None, joint: str) -> bool:
-    """Whether [uncertain] draws the waves of a joint, or of all joints."""
-    return not {f"joint.{joint}.form.waviness_seed", "joint.form.waviness_seed"}.isdisjoint(stated(choice))
+def of_parts(key: str) -> bool:
+    """Whether a number that varies is one of a material that its parts' own tests tell: E, density."""
+    return key.startswith("material.") and key.rsplit(".", 1)[-1] in OF_PARTS
 
 
-def force_factors(study: Study, bolt: str, shares: Array) -> Array:
-    """Force of a bolt over the one that the study states [-], at shares of probability of any shape.
+def known_of(case: Case) -> Known:
+    """What scatters in a case, by its key: as [uncertain] lists it, and as is assumed of the rest."""
+    return stated(with_assumed(case.study, case.structure, case.surfaces))
 
-    What [uncertain] says of the bolt or of all bolts, else the default way of tightening, or 1 where only that scatters
-    which is listed.
-    """
-    known = stated(study.uncertain)
+
+def of_number(known: Known, joint: str, name: str) -> Distribution | None:
+    """How a number of a joint scatters: by its own key, or by that of all joints; None where it does not."""
+    return known.get(f"joint.{joint}.{name}") or known.get(f"joint.{name}")
+
+
+def force_factors(known: Known, bolt: str, shares: Array) -> Array:
+    """Force of a bolt over the one that the study states [-], at shares of probability of any shape."""
     for owner in (f"bolt.{bolt}", "bolt"):
         if (factor := known.get(f"{owner}.factor")) is not None:
             return factor.quantile(shares)
         if (force := known.get(f"{owner}.preload")) is not None:  # the study has its median
             return force.quantile(shares) / force.median
-    return default("preload").quantile(shares) if study.assumes_scatter else np.ones_like(shares)
+    return np.ones_like(shares)
 
 
 def _parts_sd(choice: UncertainChoice | None) -> float | None:
     """Standard deviation of ln f by E and density, half of theirs [-]; None where [uncertain] lists neither."""
     spread: dict[str, float] = {}
     for key, one in stated(choice).items():
-        kind = key.rsplit(".", 1)[-1]
-        if key.startswith("material.") and kind in OF_PARTS:
+        if of_parts(key):
+            kind = key.rsplit(".", 1)[-1]
             low, high = one.quantile(ENDS)
             spread[kind] = max(spread.get(kind, 0.0), float(np.log(high / low)) / (2 * SCORE))
     return hypot(*spread.values()) / 2 if spread else None
@@ -169,18 +177,23 @@ def discrepancy(choice: UncertainChoice) -> float:
     return hypot(mode_sd(choice), unlisted_sd(choice))
 
 
-def with_assumed(study: Study) -> UncertainChoice:
-    """What scatters in a study: what [uncertain] lists, and what is assumed of the rest unless that is left out."""
+def with_assumed(
+    study: Study, structure: Structure, surfaces: Sequence[Surface], *, laws_drawn: bool = False
+) -> UncertainChoice:
+    """What scatters in a study: what [uncertain] lists, and what is assumed of the rest unless that is left out.
+
+    structure, surfaces: what the study is made into; laws_drawn: whether the laws that it lists are drawn themselves.
+    """
     given = study.uncertain or UncertainChoice()
     if not study.assumes_scatter:
         return given
     listed = [number_of(one.key) for one in given.inputs]
     more: list[Input] = []
-    for one in assumed(study).inputs:
+    for one in _assumed(study, structure, surfaces):
         number = number_of(one.key)
         alike = ("factor", "preload") if number.room == "bolt" else (number.name,)
         owners = {other.owner for other in listed if other.room == number.room and other.name in alike}
-        if number.name == "stiffness" and given.models:  # laws are drawn themselves
+        if number.name == "stiffness" and laws_drawn and given.models:
             continue
         if number.owner is None and owners and None not in owners:  # listed for some joints: the others have their own
             rest = [joint.name for joint in study.joints if joint.name not in owners]
@@ -190,37 +203,26 @@ def with_assumed(study: Study) -> UncertainChoice:
     return replace(given, inputs=(*given.inputs, *more))
 
 
-def assumed(study: Study) -> UncertainChoice:
+def _assumed(study: Study, structure: Structure, surfaces: Sequence[Surface]) -> list[Input]:
     """What scatters in a study that says nothing of it: stiffness of the joints, k_t/k_n, preloads, and waves."""
-    laws = of_joints(study)
-    alike = len(set(laws)) == 1
-    keys = ["joint.stiffness"] if alike else [f"joint.{joint.name}.stiffness" for joint in study.joints]
-    found = {key: law for key, law in zip(keys, laws, strict=not alike) if law is not None}
-    if not any(isinstance(joint.tangential, int | float) for joint in study.joints):
-        found["joint.tangential"] = default("k_t/k_n").within(0.01, 2.0, "()")[0]
-    for bolt in study.bolts:
-        found[f"bolt.{bolt.name}.factor"] = default("preload")
-    for joint in _wavy(study):
-        key = f"joint.{joint.name}.form.waviness"
-        if joint.form is None and ASSUMED.Wq is not None:
-            found[key] = Distribution(kind="lognormal", centre=ASSUMED.Wq, spread=0.4)
-        found[f"{key}_seed"] = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
+    found, waves = dict[str, Distribution](), dict[str, Distribution]()
+    laws, ratios = dict[str, Distribution | None](), dict[str, Distribution | None]()
+    for joint, fitted, surface in zip(study.joints, structure.joints, surfaces, strict=True):
+        name = joint.name
+        laws[name] = of_joint(study, structure.mesh, joint, surface)
+        ratios[name] = None if isinstance(joint.tangential, int | float) else default("k_t/k_n")
+        if drawn_on(study, structure.mesh, joint, fitted.interface, surface) is not None:
+            if joint.form is None and ASSUMED.Wq is not None:
+                waves[f"joint.{name}.form.waviness"] = Distribution(kind="lognormal", centre=ASSUMED.Wq, spread=0.4)
+            seed = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
+            waves[f"joint.{name}.form.waviness_seed"] = seed
+    for key, of_joints in (("stiffness", laws), ("tangential", ratios)):
+        alike = len(set(of_joints.values())) == 1  # all joints move together then
+        owners = {"joint": next(iter(of_joints.values()))} if alike else {f"joint.{k}": d for k, d in of_joints.items()}
+        found |= {f"{owner}.{key}": one for owner, one in owners.items() if one is not None}
+    found |= {f"bolt.{bolt.name}.factor": default("preload") for bolt in study.bolts} | waves
     units = {key: "m" if key.endswith("waviness") else "" for key in found}
-    return UncertainChoice(
-        inputs=tuple(Input(key=key, distribution=one, unit=units[key]) for key, one in found.items())
-    )
-
-
-def _wavy(study: Study) -> list[JointChoice]:
-    """The joints on which a run draws waves; the parts are meshed where any may be."""
-    asked = [joint.form is None or joint.form.waviness is not None for joint in study.joints]
-    if not any(asked):
-        return []
-    mesh, out = checked_mesh(study), []
-    for joint, surface, may in zip(study.joints, surfaces_of(study), asked, strict=True):
-        if may and drawn_on(study, mesh, joint, interface_of(study, mesh, joint, surface)[0], surface) is not None:
-            out.append(joint)
-    return out
+    return [Input(key=key, distribution=one, unit=units[key]) for key, one in found.items()]
 
 
 def preload_scatter(study: Study, bolt: str, choice: BoltSheetChoice) -> tuple[float, str]:

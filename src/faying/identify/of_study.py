@@ -8,17 +8,20 @@ from pathlib import Path
 import numpy as np
 
 from faying.case.case import mates_notes
+from faying.case.part_tests import KnownParts
+from faying.case.scatter import of_parts
 from faying.errors import InputError
 from faying.identify.identification import Identification, mixed
 from faying.identify.identify import identify_model
 from faying.identify.identity import paired, paired_modes
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
-from faying.identify.predict import MIN_SAMPLES, check, check_seed, cut_notes, of_bases, part_test_notes
+from faying.identify.predict import MIN_SAMPLES, check, check_seed, cut_notes, of_bases
 from faying.identify.sampling.ensemble import Ensemble, scattering
 from faying.identify.sampling.evaluate import LIMIT, Reduced
 from faying.identify.sampling.store import SampleStore
 from faying.joint.preload_case import preload_index
 from faying.misuse import checked_call
+from faying.notes import Note
 from faying.progress import Report, silent
 from faying.study.keys.uncertain import UncertainChoice
 from faying.study.keys.varied import MODEL
@@ -32,10 +35,16 @@ COUNT = 1000  # samples of the posterior
 
 
 class StudyModel:
-    """A study in its reduced bases, under one of its laws, as an identification asks for it."""
+    """A study in its reduced bases, under one of its laws, as an identification asks for it.
 
-    def __init__(self, ensemble: Ensemble, reduced: Reduced, stage: "_Stage", law: int = 0) -> None:
+    Tests of parts move its frequencies; what they leave open is less than the discrepancy that is identified.
+    """
+
+    def __init__(
+        self, ensemble: Ensemble, reduced: Reduced, stage: "_Stage", law: int = 0, parts: KnownParts | None = None
+    ) -> None:
         self.ensemble, self.reduced, self.stage, self.law = ensemble, reduced, stage, law
+        self.factors = 1.0 if parts is None else np.exp(parts.left()[0])  # on the frequencies (load, m)
         inputs = ensemble.inputs
         columns = [column for column in inputs.columns if column.key != MODEL]
         self.names = tuple(column.key for column in columns)
@@ -59,6 +68,7 @@ class StudyModel:
         self.stage.begin(stage, report)
         samples = self.ensemble.with_values(values)
         rows = self.reduced.rows(samples, what, self.law, allowed=allowed)
+        rows["named"] = rows["named"] * self.factors
         if allowed < inf and len(values) > 1:
             self.last = samples, rows
         test = self.ensemble.study.test
@@ -158,6 +168,7 @@ def _identified(
     _check_laws(study, choice)
     stage, ensemble = _Stage(report), Ensemble.of(study, 8, seed)
     reduced = Reduced(ensemble, jobs=jobs, report=stage, store=store)
+    tested = bool(study.part_tests) and not any(of_parts(one.key) for one in choice.inputs)
     losses = None
     if test.losses is not None:
         losses = Losses(
@@ -165,9 +176,13 @@ def _identified(
             scatter=choice.test_loss or LOSS_TEST_SD,
             discrepancy=choice.discrepancy_loss or LOSS_DISCREPANCY_SD,
         )
-    found, cut = [], [*cut_notes(ensemble.inputs.columns), *part_test_notes(study)]
+    found, cut = [], cut_notes(ensemble.inputs.columns)
+    if study.part_tests and not tested:
+        text = "E or density is listed under [uncertain] and identified; what was measured of parts alone is not used"
+        cut.append(Note(code="left-out", text=text))
     for law in range(max(len(choice.models), 1)):
-        model = StudyModel(ensemble, reduced, stage, law)
+        parts = KnownParts.of(study, reduced.trainer.structure, reduced.modes(ensemble, law)) if tested else None
+        model = StudyModel(ensemble, reduced, stage, law, parts)
         one = identify_model(
             model,
             np.array(test.frequencies),
@@ -181,7 +196,7 @@ def _identified(
             report=report,
         )
         bases = [] if model.last is None else of_bases(reduced.errors(*model.last))
-        mates = mates_notes(reduced.laws(ensemble))
+        mates = [*mates_notes(reduced.laws(ensemble)), *(() if parts is None else parts.notes())]
         found.append(replace(one, notes=(*mates, *cut, *one.notes, *bases)))
     if not choice.models:
         return found[0]

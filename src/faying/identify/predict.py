@@ -7,9 +7,10 @@ from typing import Any, overload
 
 import numpy as np
 
-from faying.case.case import mates_notes
+from faying.case.case import checked_mesh, mates_notes, structure_of, surfaces_of
+from faying.case.part_tests import KnownParts
 from faying.case.provenance import provenance
-from faying.case.scatter import discrepancy, lists_waves, with_assumed
+from faying.case.scatter import discrepancy, of_number, of_parts, stated, with_assumed
 from faying.errors import InputError
 from faying.identify.assemblies import Assemblies
 from faying.identify.identity import paired, paired_modes
@@ -108,16 +109,23 @@ def predict(
         return reassembled(study, assemblies, seed, jobs=jobs, out=None if out is None else Path(out), report=report)
     check(study, samples)
     (report or silent)("mesh", 0, 0)
-    study = replace(study, uncertain=with_assumed(study))
+    surfaces = surfaces_of(study)
+    structure = structure_of(study, checked_mesh(study), surfaces)
+    uncertain = with_assumed(study, structure, surfaces, laws_drawn=True)
+    if study.part_tests:  # they say what E and density are; what is listed is their prior
+        uncertain = replace(uncertain, inputs=tuple(one for one in uncertain.inputs if not of_parts(one.key)))
+    given, study = study, replace(study, uncertain=uncertain)
     choice = choice_of(study, samples, backbones) if backbones else None
-    ensemble = Ensemble.of(study, samples, seed)
+    ensemble = Ensemble.of(study, samples, seed, surfaces)
     if choice is not None:
         sliding(ensemble, choice, 0)  # raises, before the mesh
     file = None if out is None else Path(out)
     with SampleStore(file, fingerprint(study, samples, seed, LIMIT), what="prediction") as store:
-        reduced = Reduced(ensemble, jobs=jobs, report=report, store=store)
+        reduced = Reduced(ensemble, structure=structure, jobs=jobs, report=report, store=store)
         follower = None if choice is None else Follower.of(ensemble, choice, reduced)
-        found = predicted(study, ensemble, reduced, reduced.rows(ensemble), seed)
+        rows = reduced.rows(ensemble)
+        parts = KnownParts.of(given, structure, reduced.modes(ensemble)) if study.part_tests else None
+        found = predicted(study, ensemble, reduced, rows, seed, parts)
         if follower is not None:
             found = found.with_backbones(follower.follow(backbones, reduced))
         if file is not None:
@@ -144,15 +152,27 @@ def check(study: Study, samples: int) -> None:
         raise InputError('a prediction takes springs per area; leave out springs = "per-node"')
 
 
-def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, seed: int) -> Prediction:
-    """Put the rows of all samples together, with what there is to say of them."""
+def predicted(
+    study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, seed: int, parts: KnownParts | None
+) -> Prediction:
+    """Put the rows of all samples together, with what there is to say of them.
+
+    parts: those with tests of their own, which move every sample alike.
+    """
     reasons = [str(reason) for reason in rows["reasons"]]
     if all(reasons):
         raise InputError(f"none of {len(reasons)} samples has an answer; the first: {reasons[0]}")
+    if parts is None:
+        lacking = np.full(rows["frequencies"].shape[1:], discrepancy(study.uncertain or UncertainChoice()))
+    else:
+        moved, lacking = parts.left()
+        rows = {**rows, **{name: rows[name] * np.exp(moved) for name in ("frequencies", "named")}}
     tested: dict[str, Any] = {}
     if study.test is not None:
         test = np.array(study.test.frequencies)
-        tested = {"paired": paired(rows["named"], paired_modes(test, rows)), "test": test}
+        names = paired_modes(test, rows)
+        tested = {"paired": paired(rows["named"], names), "test": test}
+        tested["discrepancy_of_test_mode"] = paired(lacking[None], names)[0]
         tested["test_source"] = study.test.source
     found = Prediction(
         title=study.title,
@@ -167,19 +187,22 @@ def predicted(study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, se
         open_share=rows["open_share"],
         above_range_share=rows["above_range_share"],
         reasons=dict(by_reason(reasons)),
-        discrepancy=discrepancy(study.uncertain or UncertainChoice()),
+        discrepancy=lacking,
         provenance=provenance(study),
         **tested,
     )
     mates = mates_notes(reduced.laws(ensemble))
-    return found.with_notes([*mates, *_notes(study, found), *of_bases(reduced.errors(ensemble, rows))])
+    of_parts = () if parts is None else parts.notes()
+    return found.with_notes([*mates, *of_parts, *_notes(study, found), *of_bases(reduced.errors(ensemble, rows))])
 
 
 def _notes(study: Study, found: Prediction) -> Iterator[Note]:
     """What a reader of the intervals ought to know."""
-    yield from (*cut_notes(found.inputs.columns), *part_test_notes(study))
-    choice = study.uncertain or UncertainChoice()
-    flat = [one.name for one in study.joints if one.form is None and not lists_waves(choice, one.name)]
+    yield from cut_notes(found.inputs.columns)
+    choice, known = study.uncertain or UncertainChoice(), stated(study.uncertain)
+    flat = [
+        one.name for one in study.joints if one.form is None and not of_number(known, one.name, "form.waviness_seed")
+    ]
     if flat and study.assumes_scatter:
         text = "no waves are drawn: the faces are curved, have no room for waves, or are seats of a solid bolt"
         yield Note(code="no-waves", text=f"{joint_names(flat)}: {text}")
@@ -207,9 +230,11 @@ def _notes(study: Study, found: Prediction) -> Iterator[Note]:
             )
             yield Note(code="test-modes", text=text)
     if not choice.models:
+        low, high = (f"{end:.2%}" for end in (found.discrepancy.min(), found.discrepancy.max()))
         text = (
-            f"the intervals include what is listed above, and {found.discrepancy:.2%} of each frequency for what else "
-            "the parts are (uncertain.structure, discrepancy); not the error of the mesh"
+            f"the intervals include what is listed above, and {low if low == high else f'{low} to {high}'} of each "
+            "frequency for what else the parts are (uncertain.structure, discrepancy, tests of parts); not the error "
+            "of the mesh"
         )
         yield Note(code="interval", text=text)
 
@@ -223,15 +248,6 @@ def of_bases(errors: Array) -> list[Note]:
     pairs = zip(known, places, strict=True)
     parts = [f"{row.max():.1e} at {place} ({len(row)} looked at)" for row, place in pairs if len(row)]
     return [Note(code="bases", text=f"the small bases miss a frequency of a sample by up to {', '.join(parts)}")]
-
-
-def part_test_notes(study: Study) -> list[Note]:
-    """Say that what was measured of parts alone is not used."""
-    if not study.part_tests:
-        return []
-    names = ", ".join(study.part_tests)
-    text = f"what was measured of {names} alone is not used here; the intervals of faying run have it"
-    return [Note(code="left-out", text=text)]
 
 
 def cut_notes(columns: Sequence[Any]) -> list[Note]:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from statistics import NormalDist
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -31,7 +30,6 @@ from faying.style import (
     headline,
     load_colours,
     new_figure,
-    prefixed,
     shared_legend,
 )
 from faying.text import listed, notes_row
@@ -86,7 +84,6 @@ class Prediction(Recorded):
         tolerance: Relative error of a frequency that the bases were made for.
         basis: Sizes of the bases for equilibrium and vibration.
         reasons: Why samples have no answer, and how many.
-        discrepancy: Standard deviation of ln f that the samples lack: of each mode, and of parts that do not scatter.
         backbones: Of the first samples; None where they were not asked for.
         notes: What there is to say.
         test, test_source: The test, where the study has one.
@@ -110,13 +107,18 @@ class Prediction(Recorded):
     above_range_share: Array = variable(
         "sample load", "1", "share of the contact above the end of the law", "samples/above_range_share", gaps=True
     )
+    discrepancy: Array = variable(
+        "load mode", "1", "standard deviation of ln f that samples lack: of the mode, and of parts that do not scatter"
+    )
     paired: Array | None = optional(
         "sample load test_mode", "Hz", "frequencies of the test's modes", "samples/frequency_of_test_mode", gaps=True
+    )
+    discrepancy_of_test_mode: Array | None = optional(
+        "load test_mode", "1", "discrepancy of the test's modes", gaps=True
     )
     test: Array | None = optional("load test_mode", "Hz", "measured frequencies", "test/frequency", gaps=True)
     test_source: str = ""
     reasons: dict[str, int] = field(default_factory=dict)
-    discrepancy: float = 0.0
     backbones: Backbones | None = None
     notes: tuple[Note, ...] = ()
     provenance: Provenance | None = None
@@ -127,8 +129,8 @@ class Prediction(Recorded):
         rows = {"scatters": listed(self.names, 4), "preloads": listed(load_texts(self.loads))}
         if not self.answered:
             return head, rows | {"why": shortened("; ".join(self.reasons))}
-        values, test = self.observed
-        low, middle, high = _levels(self._with_discrepancy(values[self.sound][:, -1]), LEVELS)
+        values, test, lacking = self.observed
+        low, middle, high = _levels(with_discrepancy(values[self.sound], lacking)[:, -1], LEVELS)
         rows["frequencies"] = f"5 % | 50 % | 95 % at {load_texts(self.loads)[-1]}"
         shown = min(len(middle), MAX_MODES)
         for k in range(shown):
@@ -173,22 +175,18 @@ class Prediction(Recorded):
         frequencies, damping = self.backbones.quantiles(levels)
         return replace(found, backbone_frequencies=frequencies, backbone_damping=damping)
 
-    def _with_discrepancy(self, values: Array) -> Array:
-        """Frequencies (n, ...) with those that the discrepancy makes of each, in equal shares (n * scores, ...)."""
-        if not self.discrepancy:
-            return values
-        return np.concatenate([values * np.exp(self.discrepancy * score) for score in SCORES])
-
     def _quantiles(self, levels: tuple[float, ...], which: Any) -> Quantiles:
         if not np.any(which):
             raise InputError(f"no sample has an answer: {'; '.join(self.reasons)}")
-        paired = None if self.paired is None else self._with_discrepancy(self.paired[which])
+        paired = None
+        if self.paired is not None and self.discrepancy_of_test_mode is not None:
+            paired = _levels(with_discrepancy(self.paired[which], self.discrepancy_of_test_mode), levels)
         return Quantiles(
             levels=levels,
-            frequencies=_levels(self._with_discrepancy(self.frequencies[which]), levels),
+            frequencies=_levels(with_discrepancy(self.frequencies[which], self.discrepancy), levels),
             loss_factors=_levels(self.loss_factors[which], levels),
             slopes=_levels(self.slopes[which], levels),
-            paired=None if paired is None else _levels(paired, levels),
+            paired=paired,
         )
 
     @cached_property
@@ -210,11 +208,11 @@ class Prediction(Recorded):
         return float((np.abs(part - whole) / width).max())
 
     @property
-    def observed(self) -> tuple[Array, Array]:
-        """Frequencies (sample, load, k) and their test (load, k): the test's modes; all modes where there is none."""
-        if self.paired is None or self.test is None:
-            return self.frequencies, np.full(self.frequencies.shape[1:], np.nan)
-        return self.paired, self.test
+    def observed(self) -> tuple[Array, Array, Array]:
+        """Frequencies (sample, load, k), their test and discrepancy (load, k): of the test's modes, or else of all."""
+        if self.paired is None or self.test is None or self.discrepancy_of_test_mode is None:
+            return self.frequencies, np.full(self.frequencies.shape[1:], np.nan), self.discrepancy
+        return self.paired, self.test, self.discrepancy_of_test_mode
 
     @property
     def covered(self) -> tuple[int, int]:
@@ -254,7 +252,7 @@ class Prediction(Recorded):
 
     @cached_property
     def _shares(self) -> tuple[Shares, Array]:
-        seen = self.observed[0][:, -1]
+        seen, lacking = self.observed[0][:, -1], self.observed[2][-1]
         inputs, columns = self.inputs, self.columns
         numeric = len(columns) - bool(inputs.models)
         if not numeric:
@@ -295,7 +293,7 @@ class Prediction(Recorded):
 
         variance = np.nanvar(seen[self.sound][:, modes], axis=0)
         missed = squared / self.answered / np.where(variance > 0, variance, np.inf)
-        beyond = (self.discrepancy * np.nanmean(seen[self.sound][:, modes], axis=0)) ** 2
+        beyond = (lacking[modes] * np.nanmean(seen[self.sound][:, modes], axis=0)) ** 2
         found = shares(function, [inputs.priors[k] for k in columns], count=POINTS)
         sampled = variance / np.where(variance + beyond > 0, variance + beyond, 1.0)
         unexplained = np.minimum(missed, 1.0) * sampled
@@ -382,6 +380,11 @@ class Prediction(Recorded):
         return target
 
 
+def with_discrepancy(values: Array, discrepancy: Array) -> Array:
+    """Frequencies (n, load, k), and those that a discrepancy (load, k) makes of each in equal shares: more samples."""
+    return np.concatenate([values * np.exp(discrepancy * score) for score in SCORES])
+
+
 def _levels(values: Array, levels: tuple[float, ...]) -> Array:
     """Quantiles (q, ...) over the first axis, NaN left out; NaN where nothing is left."""
     import warnings
@@ -389,9 +392,6 @@ def _levels(values: Array, levels: tuple[float, ...]) -> Array:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # all-NaN columns, such as losses where none is predicted
         return np.asarray(np.nanquantile(values, levels, axis=0))
-
-
-MAX_INPUTS = 6  # of the scatter matrix
 
 
 @drawing
@@ -460,29 +460,6 @@ def tornado(found: Prediction) -> Any:
     ax.set_xlabel(f"share of the variance at {load_text(found.loads[-1])} [%]")
     fig.legend(loc="outside lower center", ncols=2)
     ax.set_title(headline(found.title))
-    return fig
-
-
-@drawing
-def scatter_matrix(found: Prediction) -> Any:
-    """Return the figure of the samples: the inputs that matter most against the frequencies at the last preload."""
-    shares, _ = found.shares()
-    values, _ = found.observed
-    frequencies = values[:, -1]
-    modes = np.arange(min(3, frequencies.shape[1]))
-    order = np.array(found.columns)[np.argsort(np.nanmean(shares.total[modes][:, :-2], axis=0))[::-1][:MAX_INPUTS]]
-    fig = new_figure(WIDE, 1.25 * len(modes) + 0.8)
-    axes = fig.subplots(len(modes), len(order), sharex="col", sharey="row", squeeze=False)
-    for row, mode in enumerate(modes):
-        for column, k in enumerate(order):
-            ax = axes[row, column]
-            factor, unit = prefixed(found.values[:, k], found.inputs.columns[k].unit)
-            ax.plot(found.values[:, k] / factor, frequencies[:, mode], ".", ms=2, color=COLOURS[0], alpha=0.5)
-            ax.locator_params(nbins=3)
-            if row == len(modes) - 1:
-                words = wrap(name_of(found.names[k]), 18, break_long_words=False)
-                ax.set_xlabel("\n".join([*words, f"[{unit}]"] if unit else words))
-        axes[row, 0].set_ylabel(f"mode {mode + 1} [Hz]")
     return fig
 
 

@@ -12,7 +12,7 @@ from faying.answer.run import run
 from faying.case.case import Case, bare
 from faying.case.clearance import Clearance, clearances
 from faying.case.provenance import provenance
-from faying.case.scatter import force_factors
+from faying.case.scatter import force_factors, known_of
 from faying.case.waves import MovableFace
 from faying.errors import InputError
 from faying.identify.assemblies import SOURCES, Assemblies
@@ -70,7 +70,8 @@ class Drawn:
         """Draw assemblies by Sobol's sequence, scrambled: forces, a permutation of the bolts, and places in a disk."""
         study, bolts = case.study, len(case.study.bolts)
         shares = sobol(2 * bolts + 2 * len(plays), count, seed)
-        factors = [force_factors(study, bolt.name, shares[:, k]) for k, bolt in enumerate(study.bolts)]
+        known = known_of(case)
+        factors = [force_factors(known, bolt.name, shares[:, k]) for k, bolt in enumerate(study.bolts)]
         base = np.array(study.preloads[0].order or range(bolts))
         orders = np.argsort(shares[:, bolts : 2 * bolts], axis=1)[:, base]  # the study's order, with bolts renamed
         shifts = np.zeros((count, len(faces), 3))
@@ -79,7 +80,7 @@ class Drawn:
             size, turn = shares[:, 2 * bolts + 2 * k :][:, :2].T
             radius, angle = play.reach * np.sqrt(size), 2 * np.pi * turn  # evenly over the disk
             for number, sign, _ in moving:
-                x, y = moving[0][2].axes.x_axis, moving[0][2].axes.y_axis
+                x, y = moving[0][2].place.axes.x_axis, moving[0][2].place.axes.y_axis
                 shifts[:, number] = sign * (np.outer(radius * np.cos(angle), x) + np.outer(radius * np.sin(angle), y))
         firm = all(bolt.stiffness is not None for bolt in case.structure.fitted_bolts)
         there = True, bolts > 1 and firm, bool(np.any(shifts))

@@ -1,6 +1,7 @@
 """Vectors that grow in number, orthonormal in one energy, with what joints and operators make of them."""
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -40,6 +41,12 @@ class Basis:
     def vectors(self) -> Array:
         """The vectors (n, m)."""
         return self._vectors.values
+
+    def branch(self) -> "Basis":
+        """A basis that begins as this one and grows by itself; room is shared, so that only one may grow at a time."""
+        made = copy(self)
+        made._vectors, made._image, made.small = copy(self._vectors), copy(self._image), list(self.small)
+        return made
 
     def add(self, new: Array, *, least: float = 0.0) -> int:
         """Add columns (n, k); return how many directions were new.

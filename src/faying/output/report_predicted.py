@@ -50,7 +50,7 @@ def predicted(found: Prediction) -> str:
         if lines:
             body += [f"<h2>{escape(title)}</h2>", page.table(lines), f"<p>{escape(below)}</p>" if below else ""]
     body.append("<h2>Figures</h2>")
-    figures = [("intervals", drawing.intervals), ("shares", drawing.tornado), ("samples", drawing.scatter_matrix)]
+    figures = [("intervals", drawing.intervals), ("shares", drawing.tornado)]
     if found.backbones is not None:
         figures.append(("backbones", drawing.backbones))
     for name, draw in figures:

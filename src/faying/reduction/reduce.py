@@ -9,6 +9,7 @@ estimate that every evaluation carries.
 """
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Self
@@ -62,13 +63,14 @@ def real_parts(values: Any) -> list[Array]:
 class Gapped:
     """One variant: the law of each joint, force of each bolt [N] (b,), friction and gap [m] (q,) of each joint.
 
-    start: coefficients of a like equilibrium, where one is known.
+    scales: of the parts; start: coefficients of a like equilibrium, where one is known.
     """
 
     laws: Sequence[JointLaw]
     forces: Array
     friction: Sequence[float | None]
     gaps: Sequence[Array]
+    scales: Scales | None = None
     start: Array | None = None
 
 
@@ -347,9 +349,29 @@ class Reduction:
         return float(modal.max() + np.abs(new / old - 1)[:count].max()) / 2  # of a square of a frequency
 
     def at(self, variant: Gapped) -> ReducedModel:
-        """The bases as they are, with the gaps of a variant; `model` has them from then on."""
-        self.model = self.model.with_gaps(variant.gaps)
+        """The bases as they are, with the gaps and scales of a variant; `model` has them from then on."""
+        self.model = self.model.with_gaps(variant.gaps).with_scales(variant.scales)
         return self.model
+
+    def branch(self) -> Self:
+        """Bases that begin as these and grow by themselves; of branches only one may grow at a time."""
+        made = copy(self)
+        made.static, made.dynamic = self.static.branch(), self.dynamic.branch()
+        return made
+
+    def train_each(
+        self, every: Sequence[Sequence[Gapped]], tolerance: float
+    ) -> list[list[PreloadState] | NotConverged]:
+        """Make the bases fit groups of variants, together; the equilibria of each group, or why it has none.
+
+        Where they cannot be trained together, each group is trained alone, so that one without an answer loses none
+        else.
+        """
+        try:
+            found = iter(self.train_together([one for group in every for one in group], tolerance))
+        except NotConverged as fault:
+            return [fault] if len(every) == 1 else [self.train_each([group], tolerance)[0] for group in every]
+        return [[next(found) for _ in group] for group in every]
 
     def train_together(self, variants: Sequence[Gapped], tolerance: float) -> list[PreloadState]:
         """Make the bases fit several variants, which costs less than one after the other; return their equilibria.
@@ -452,8 +474,8 @@ class Reduction:
         gaps: of the joints before any load [m] (q,), those of the model where None; scales: of the parts. The model has
         both from then on. Returns the coefficients from which a like variant may start.
         """
-        self.model = self.model.with_gaps(gaps).with_scales(scales)
-        one = Gapped(laws=laws, forces=forces, friction=friction, gaps=self.model.gaps, start=start)
+        gaps = self.model.gaps if gaps is None else gaps
+        one = Gapped(laws=laws, forces=forces, friction=friction, gaps=gaps, scales=scales, start=start)
         (found,) = self.train_together([one], tolerance)
         _, vectors, _ = self.model.modes(self.model.springs(laws, found.pressures))
         self._note(laws, found, vectors)

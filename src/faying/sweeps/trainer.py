@@ -7,14 +7,16 @@ from typing import Self
 import numpy as np
 
 from faying.case.case import checked_mesh, materials_at, structure_of
+from faying.case.waves import JointPlacement
 from faying.errors import FayingError
 from faying.joint.structure import Structure
 from faying.progress import Report
 from faying.reduction.part_shares import PartShares
 from faying.reduction.reduce import STATIC_SHARE, Reduction
 from faying.reduction.reduced import ReducedModel
+from faying.study.keys.varied import varied
 from faying.study.study import Study
-from faying.sweeps.variant_builder import Design, JointPlacement, VariantBuilder
+from faying.sweeps.variant_builder import Design, VariantBuilder
 from faying.typing import Array
 
 CORNERS, RANDOM, CHECKS = 16, 8, 5  # variants trained on, and those that are looked at afterwards
@@ -36,12 +38,17 @@ class Trainer:
         self.reduction: Reduction | None = None
 
     @classmethod
-    def of(cls, study: Study, design: Design, tolerance: float, report: Report) -> Self:
-        """Mesh a study and lay its laws on the joints; what varies is that of the design."""
-        mesh = checked_mesh(study)
-        pairs = tuple(materials_at(study, mesh, joint) for joint in study.joints)
-        structure = structure_of(study, mesh, design.surfaces)
-        builder = VariantBuilder(design=design, pairs=pairs, places=JointPlacement.all(structure, design))
+    def of(
+        cls, study: Study, design: Design, tolerance: float, report: Report, structure: Structure | None = None
+    ) -> Self:
+        """Take the structure of a study, or make it; what varies is that of the design."""
+        structure = structure or structure_of(study, checked_mesh(study), design.surfaces)
+        pairs = tuple(materials_at(study, structure.mesh, joint) for joint in study.joints)
+        places = tuple[JointPlacement, ...]()
+        if any(number.of_form for number in map(varied, design.keys) if number is not None):
+            joints = zip(study.joints, structure.joints, design.surfaces, strict=True)
+            places = tuple(JointPlacement.of(structure.mesh, one, j.interface, surface) for one, j, surface in joints)
+        builder = VariantBuilder(design=design, pairs=pairs, places=places)
         return cls(study, structure, builder, tolerance, report)
 
     def model(self, more: Sequence[int] = (), learn: Sequence[int] = ()) -> ReducedModel:
@@ -74,6 +81,13 @@ class Trainer:
         self.reduction.compress(self.tolerance)  # so that the estimate knows what was learnt
         return self.reduction
 
+    def modelled(self, points: Sequence[int]) -> Reduction:
+        """Return bases for some points with the form of the study in place of their own, and for nothing else."""
+        if self.reduction is None:
+            self.reduction = self._first_bases(points[-1:], modelled=True)
+            self._train(self.reduction, points, "training", modelled=True)
+        return self.reduction
+
     def resume(self, kept: Mapping[str, Array]) -> None:
         """Go on with bases that interrupted work has left, from `Reduction.arrays`."""
         self.report("reference solution", 0, 0)
@@ -84,15 +98,18 @@ class Trainer:
         parts = self.builder.parts
         return PartShares.of(self.structure, parts) if parts else None
 
-    def _first_bases(self, points: Sequence[int]) -> Reduction:
-        """Bases from the first of the points that has an answer; raises what the first of them met where none has."""
+    def _first_bases(self, points: Sequence[int], *, modelled: bool = False) -> Reduction:
+        """Bases from the first of the points that has an answer; raises what the first of them met where none has.
+
+        modelled: with the form of the study.
+        """
         fault: FayingError | None = None
         for index in dict.fromkeys(points):
             self.report("reference solution", 0, 0)
             try:
                 laws, forces, _ = self.builder.laws(index)
                 return Reduction.of(
-                    self.structure.with_joints(gaps=self.builder.gaps(index)),
+                    self.structure.with_joints(gaps=None if modelled else self.builder.gaps(index)),
                     laws,
                     forces,
                     count=self.study.modes.count + SPARE_MODES,
@@ -105,7 +122,9 @@ class Trainer:
         assert fault is not None
         raise fault
 
-    def _train(self, reduction: Reduction, points: Iterable[int], what: str, slack: float = 1.0) -> None:
+    def _train(
+        self, reduction: Reduction, points: Iterable[int], what: str, slack: float = 1.0, *, modelled: bool = False
+    ) -> None:
         fault: FayingError | None = None
         start: Array | None = None
         for number, index in enumerate(points):
@@ -115,7 +134,7 @@ class Trainer:
                     *self.builder.laws(index),
                     tolerance=slack * self.tolerance,
                     start=start,
-                    gaps=self.builder.gaps(index),
+                    gaps=self.builder.modelled_gaps if modelled else self.builder.gaps(index),
                     scales=self.builder.scales(index),
                 )
             except FayingError as met:  # a point without an answer is reported when it is evaluated
@@ -137,10 +156,8 @@ class Trainer:
             reduction.learn(laws, found)
             start = found.preload.displacement
 
-    def error(self, index: int) -> float:
+    def error(self, index: int, reduction: Reduction) -> float:
         """Relative error of the frequencies [-] at one point, by `Reduction.frequency_error`; NaN: no answer."""
-        reduction = self.reduction
-        assert reduction is not None
         try:
             laws, forces, friction = self.builder.laws(index)
             reduction.model = self.builder.model_at(reduction.model, index)

@@ -2,22 +2,23 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
 from faying.case.case import Case, materials_of
+from faying.case.waves import JointPlacement
 from faying.contact.auto import Choice
 from faying.contact.build import check_entries
 from faying.errors import InputError
-from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
-from faying.form.waviness import ScanWaves
 from faying.joint.joint_law import JointLaw
 from faying.joint.preload_case import PreloadCase
 from faying.joint.structure import Structure
 from faying.materials import Material
 from faying.reduction.part_shares import Scales
+from faying.reduction.reduce import Gapped
 from faying.reduction.reduced import ReducedModel
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import Surface
@@ -146,43 +147,6 @@ class Design(Protocol):
         """The study at one point."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class JointPlacement:
-    """Where a joint lies: its points (q, 3) [m] and their areas (q,) [m2], the gap of its geometry there (q,) [m], the
-    face's own axes, and what its scan says of waves."""
-
-    positions: Array
-    weights: Array
-    geometry: Array
-    axes: FaceAxes
-    scan: ScanWaves | None
-
-    @classmethod
-    def all(cls, structure: Structure, design: Design) -> "tuple[JointPlacement, ...]":
-        """The place of each joint; none where no form varies."""
-        if not any(number.of_form for number in map(varied, design.keys) if number is not None):
-            return ()
-        out = []
-        for joint, choice, surface in zip(structure.joints, design.study.joints, design.surfaces, strict=True):
-            interface, form = joint.interface, choice.form
-            axes = FaceAxes.of(structure.mesh, joint.faces, interface, None if form is None else form.along)
-            place = cls(
-                positions=interface.positions,
-                weights=interface.weights,
-                geometry=np.zeros(len(interface.weights)),
-                axes=axes,
-                scan=surface.waves,
-            )
-            out.append(replace(place, geometry=interface.gap - place.gap(form)))
-        return tuple(out)
-
-    def gap(self, form: Form | None) -> Array:
-        """Gap [m] (q,) before any load with a form on the geometry."""
-        if form is None:
-            return self.geometry
-        return self.geometry + form.with_scan(self.scan).at(self.positions, self.axes, self.weights)
-
-
 class Lately(Generic[Known, Made]):
     """What was made lately, each with all that it was made from, which is compared by equality."""
 
@@ -215,9 +179,10 @@ class VariantBuilder:
     # contact laws, and the laws of joints with their tables: along an axis of preload they stay the same
     _made: Lately[tuple[int, LawChoice, Surface], MadeLaw] = field(default_factory=Lately, repr=False, compare=False)
     _laid: Lately[tuple[MadeLaw, JointLaw], JointLaw] = field(default_factory=Lately, repr=False, compare=False)
+    _formed: Lately[tuple[int, Form | None], Array] = field(default_factory=Lately, repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**vars(self), "_made": Lately(), "_laid": Lately()}
+        return {**vars(self), "_made": Lately(), "_laid": Lately(), "_formed": Lately()}
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -228,8 +193,8 @@ class VariantBuilder:
         """Gap [m] (q,) of each joint at one point; None where no form varies."""
         if not self.places:
             return None
-        joints = self.design.point(index).study.joints
-        return [place.gap(joint.form) for place, joint in zip(self.places, joints, strict=True)]
+        forms = enumerate(joint.form for joint in self.design.point(index).study.joints)
+        return [self._formed.get(one, partial(self.places[one[0]].gap, one[1])) for one in forms]
 
     @property
     def modelled_gaps(self) -> list[Array] | None:
@@ -249,6 +214,12 @@ class VariantBuilder:
         made = self._made.get((number, law, surface), lambda: MadeLaw(law.make(surface, rough, other)))
 
         return joint.laid(made.chosen, rough.nu, lambda law: self._laid.get((made, law), lambda: law))
+
+    def variant(self, index: int, gaps: Sequence[Array], start: Array | None = None) -> Gapped:
+        """One point, as bases are trained on it; gaps: those where no form varies; start: as `Gapped` has it."""
+        laws, forces, friction = self.laws(index)
+        gaps, scales = self.gaps(index) or gaps, self.scales(index)
+        return Gapped(laws=laws, forces=forces, friction=friction, gaps=gaps, scales=scales, start=start)
 
     def model_at(self, model: ReducedModel, index: int) -> ReducedModel:
         """A model of the structure with the gaps and the scales of one point."""

@@ -13,7 +13,7 @@ from faying.files import new_folder, write_text
 
 if TYPE_CHECKING:
     from faying.study import Study
-NOT_OF_ASSEMBLIES = ("samples", "plot", "tornado", "scatter", "backbones", "bands", "html")  # what no assembly has
+NOT_OF_ASSEMBLIES = ("samples", "plot", "tornado", "backbones", "bands", "html")  # what no assembly has
 DEFAULT = click.core.ParameterSource.DEFAULT
 
 
@@ -27,7 +27,6 @@ DEFAULT = click.core.ParameterSource.DEFAULT
 @click.option("--out", type=PATH, help="NetCDF file (default: prediction.nc in the folder that run writes to).")
 @click.option("--plot", type=FILE, help="Draw the intervals (svg, png, pdf).")
 @click.option("--tornado", type=FILE, help="Draw the shares of the variance.")
-@click.option("--scatter", type=FILE, help="Draw inputs against frequencies.")
 @click.option(
     "--backbones",
     type=click.IntRange(8, 1_000_000),
@@ -52,7 +51,6 @@ def command(
     out: Path | None,
     plot: Path | None,
     tornado: Path | None,
-    scatter: Path | None,
     backbones: int | None,
     bands: Path | None,
     assemblies: int | None,
@@ -86,7 +84,6 @@ def command(
     figures = {
         drawing.intervals: plot,
         drawing.tornado: tornado,
-        drawing.scatter_matrix: scatter,
         drawing.backbones: bands,
     }
     for file in filter(None, figures.values()):

@@ -69,6 +69,11 @@ class Inputs:
         """Distribution of each column; that of the law is the share of the weights, from 0 to 1."""
         return tuple(column.distribution for column in self.columns)
 
+    @property
+    def draws_waves(self) -> bool:
+        """Whether each sample has waves of its own."""
+        return any(name.endswith("waviness_seed") for name in self.names)
+
     def model(self, share: float) -> str:
         """The law at a share of the weights, from 0 to 1."""
         ends = np.cumsum([weight for _, weight in self.models])
@@ -175,11 +180,14 @@ class Ensemble:
     _last: dict[int, StudyVariant] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @classmethod
-    def of(cls, study: Study, count: int, seed: int) -> "Ensemble":
-        """Draw samples by Sobol's sequence, scrambled. Raises InputError where the study cannot be varied so."""
+    def of(cls, study: Study, count: int, seed: int, surfaces: tuple[Surface, ...] | None = None) -> "Ensemble":
+        """Draw samples by Sobol's sequence, scrambled. Raises InputError where the study cannot be varied so.
+
+        surfaces: of its joints, where they were read before.
+        """
         if study.in_order:
             raise InputError("a prediction pulls all bolts at once; leave out [tightening]")
-        surfaces = surfaces_of(study)
+        surfaces = surfaces_of(study) if surfaces is None else surfaces
         inputs = Inputs.of(study, surfaces)
         rows = cls._far(inputs, seed)
         made = cls(

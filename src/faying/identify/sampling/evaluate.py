@@ -1,10 +1,10 @@
 """Evaluates samples of a study in its small bases: modes at every load, and which of them are those of the test."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -13,15 +13,17 @@ from faying.identify.identity import by_name, named
 from faying.identify.sampling.ensemble import Ensemble
 from faying.identify.sampling.points import at_shares, sobol
 from faying.identify.sampling.store import SampleStore
+from faying.joint.equilibrium import PreloadState
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
 from faying.measured.pairing import pair_over_loads
 from faying.numerics.follow import follow
 from faying.progress import Report, silent
+from faying.reduction.reduce import Reduction
 from faying.reduction.reduced import ReducedModel, Variant
 from faying.study.keys.test import TestChoice
-from faying.sweeps.parallel import Rows, each, rows_of
+from faying.sweeps.parallel import Rows, Work, each, rows_of
 from faying.sweeps.trainer import Trainer
 from faying.sweeps.variant_builder import VariantBuilder, contact_shares
 from faying.typing import Array, Index
@@ -30,6 +32,8 @@ TRAINED = 1.5e-4  # relative error of a frequency where the bases are trained
 # estimate of the error of a frequency up to which the bases do not grow for a sample; the error is less, mostly
 LIMIT = 7.5e-3
 CHUNK = 32  # samples evaluated in one go
+DRAWN = 5e-4  # relative error of a frequency where the bases are trained on samples with waves of their own
+DRAWN_TOGETHER = 8  # of these: fewer share less of a factor that is read, more make the bases large
 ROUNDS = 2  # of training at samples that the bases do not fit
 WORST = 4  # samples trained on in each round
 LEARNT = 64  # samples, at all of their loads, to whose needs the bases are compressed
@@ -50,6 +54,7 @@ class Evaluator:
         test: The test; None where the study has none.
         median: The median at each load: after the shapes of its modes those of samples are named, and its equilibria
             are where those of samples start.
+        trained: Equilibria of samples at the first and the last load, or why they have none, where it is known.
     """
 
     model: ReducedModel
@@ -57,6 +62,7 @@ class Evaluator:
     seen: tuple[Array, Array] | None = None
     test: TestChoice | None = None
     median: tuple[Variant, ...] = ()
+    trained: Mapping[int, Sequence[PreloadState] | FayingError] = field(default_factory=dict)
 
     @property
     def ensemble(self) -> Ensemble:
@@ -78,6 +84,10 @@ class Evaluator:
 
         drawn: whether with its own draw of waves, or with the form of the study.
         """
+        known = self.trained.get(sample, ())
+        if isinstance(known, FayingError):
+            raise known
+        starts = {0: known[0], self.ensemble.loads - 1: known[-1]} if known else {}
         ensemble, builder = self.ensemble, self.builder
         first = (ensemble.training + sample) * ensemble.loads
         model = builder.model_at(self.model, first)
@@ -89,8 +99,25 @@ class Evaluator:
             start = found[-1].preload.displacement if found else None
             if usual:
                 start = usual[load] if start is None else start + usual[load] - usual[load - 1]
+            start = starts[load].displacement if load in starts else start
             found.append(model.evaluate(laws, forces, friction, start))
         return model, found, laws
+
+    def within(
+        self,
+        bases: Reduction,
+        seen: tuple[Array, Array] | None,
+        trained: Mapping[int, Sequence[PreloadState] | FayingError],
+    ) -> Self:
+        """The same in bases that have grown from these."""
+        size, static = len(bases.dynamic.small[0]), len(bases.static.small[0])
+        median = []
+        for one in self.median:
+            shapes = np.pad(one.shapes, ((0, size - len(one.shapes)), (0, 0)))
+            moved = np.pad(one.preload.displacement, (0, static - len(one.preload.displacement)))
+            median.append(replace(one, shapes=shapes, preload=replace(one.preload, displacement=moved)))
+        model = replace(bases.model, count=self.model.count)
+        return replace(self, model=model, seen=seen, median=tuple(median), trained=trained)
 
     def with_median(self, law: int) -> "Evaluator":
         """The same, with the median under one of the laws, or the first sample that has an answer.
@@ -171,23 +198,31 @@ class Reduced:
 
     Args:
         ensemble: The samples.
+        structure: That of the study; it is made where None.
         jobs: Processes on this machine.
         report: Called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
         store: Keeps bases and samples on disk, so that interrupted work goes on; None keeps nothing.
     """
 
     def __init__(
-        self, ensemble: Ensemble, *, jobs: int = 1, report: Report | None = None, store: SampleStore | None = None
+        self,
+        ensemble: Ensemble,
+        *,
+        structure: Structure | None = None,
+        jobs: int = 1,
+        report: Report | None = None,
+        store: SampleStore | None = None,
     ) -> None:
         self.jobs = jobs
         self.report: Report = report or silent
         self.report("mesh", 0, 0)
         inputs = ensemble.inputs
         spread = ensemble.with_values(at_shares(inputs.priors, sobol(len(inputs.columns), LEARNT, 0)))
-        self.trainer = Trainer.of(ensemble.study, spread, TRAINED, self.report)
+        self.trainer = Trainer.of(ensemble.study, spread, TRAINED, self.report, structure)
         self.store = store or SampleStore(None, what="samples")
         self.seen: tuple[Array, Array] | None = None
         self._work: dict[int, Evaluator] = {}  # in the bases as they are, with the median under each law
+        self.draws_waves, self.medians = inputs.draws_waves, range(max(len(inputs.models), 1) * ensemble.loads)
         kept = self.store.model()
         if kept is None:
             self._train((), _all_loads(spread, range(LEARNT)))
@@ -198,7 +233,12 @@ class Reduced:
         """Make or enrich the bases at some points and compress them to the needs of others; what the test sees."""
         if points:
             self._resume()
-        self.model, self._work = self.trainer.model(points, learn), {}
+        if self.draws_waves:
+            # draws are nowhere alike: what one of them needs is of no use to others
+            self.model = replace(self.trainer.modelled(self.medians).model, count=self.trainer.study.modes.count)
+        else:
+            self.model = self.trainer.model(points, learn)
+        self._work = {}
         test, reduction = self.trainer.study.test, self.trainer.reduction
         assert reduction is not None
         if test is not None:
@@ -222,17 +262,34 @@ class Reduced:
         down to the least; NaN where there are too few, or no answer. The estimate of a sample tells which are worse
         than others; these tell how wrong they are.
         """
-        self._resume()
-        if self.trainer.reduction is None:  # what was kept is damaged
-            self.trainer.trained()
-        worst = _worst(rows)
+        bases, worst = self._whole(), _worst(rows)
+        if self.draws_waves:
+            sound = np.flatnonzero(np.isfinite(rows["frequencies"][:, 0, 0]))
+            some = sound[np.unique(np.linspace(0, len(sound) - 1, WORST).astype(int))]
+            bases, _ = self._of_draws(ensemble, 0, some)
+            middle = (ensemble.training + some) * ensemble.loads + ensemble.loads // 2
+            drawn = np.array([self.trainer.error(int(index), bases) for index in middle])
+            return np.stack([np.full(len(drawn), np.nan), drawn])
         ranked = np.argsort(-worst)[: np.count_nonzero(worst)]
         places = np.concatenate([np.arange(WORST), np.linspace(WORST, len(ranked) - 1, WORST + 1)[1:]]).astype(int)
         self.report("check", 0, 0)
         points = self._points(ensemble, rows, ranked[np.unique(places[places < len(ranked)])])
         found = np.full(2 * WORST, np.nan)
-        found[: len(points)] = [self.trainer.error(index) for index in points]
+        found[: len(points)] = [self.trainer.error(index, bases) for index in points]
         return found.reshape(2, WORST)
+
+    def _whole(self) -> Reduction:
+        """The bases at the size of the structure."""
+        self._resume()
+        if self.trainer.reduction is None:  # what was kept is damaged
+            self._train((), ())
+        assert self.trainer.reduction is not None
+        return self.trainer.reduction
+
+    def modes(self, ensemble: Ensemble, law: int = 0) -> list[tuple[Array, Array]]:
+        """Modes of the medians under each load: frequencies [Hz] (m,) and real, mass-normalised shapes (n, m)."""
+        basis, mass = self._whole().dynamic.vectors, self.model.matrices[2]
+        return [(one.frequencies, basis @ _real(one.shapes, mass)) for one in self._evaluator(ensemble, law).median]
 
     def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, allowed: float = LIMIT) -> Rows:
         """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
@@ -243,11 +300,13 @@ class Reduced:
         known = self.store.rows(f"{what}-all", 0)
         if known is not None:
             return known
-        chunks = [range(i, min(i + CHUNK, ensemble.count)) for i in range(0, ensemble.count, CHUNK)]
+        size = DRAWN_TOGETHER if self.draws_waves else CHUNK
+        chunks = [range(i, min(i + size, ensemble.count)) for i in range(0, ensemble.count, size)]
         tell = partial(self.report, "evaluations")
-        out = self.store.all_rows(what, self._evaluator(ensemble, law).rows, chunks, self.jobs, tell)
+        work: Work = partial(self._drawn, ensemble, law) if self.draws_waves else self._evaluator(ensemble, law).rows
+        out = self.store.all_rows(what, work, chunks, 1 if self.draws_waves else self.jobs, tell)
         out["reasons"] = out["reasons"].astype(object)  # of any length
-        for _ in range(ROUNDS):
+        for _ in range(0 if self.draws_waves else ROUNDS):
             worst = _worst(out)
             far = np.flatnonzero(worst > allowed)
             if not len(far):
@@ -262,6 +321,28 @@ class Reduced:
                 break
         self.store.keep_rows(f"{what}-all", 0, out)
         return out
+
+    def _of_draws(self, ensemble: Ensemble, law: int, samples: Sequence[int]) -> tuple[Reduction, Evaluator]:
+        """Bases that have grown by what the waves of some samples need at the first and the last load, and their work.
+
+        They grow from those of the medians, each time anew: a basis for all draws would be as large as the structure.
+        """
+        work, bases, loads = self._evaluator(ensemble, law), self._whole().branch(), ensemble.loads
+        self.trainer.builder = work.builder
+        first = [(ensemble.training + int(sample)) * loads for sample in samples]
+        starts: list[Array | None] = [one.preload.displacement for one in work.median]
+        starts = starts or [None] * loads
+        usual = [(load, starts[load]) for load in sorted({0, loads - 1})]
+        gaps = [joint.interface.gap for joint in self.trainer.structure.joints]
+        every = [[work.builder.variant(index + load, gaps, start) for load, start in usual] for index in first]
+        trained = dict(zip(map(int, samples), bases.train_each(every, DRAWN), strict=True))
+        test = self.trainer.study.test
+        seen = None if test is None else bases.probe(probe(self.trainer.structure, test))
+        return bases, work.within(bases, seen, trained)
+
+    def _drawn(self, ensemble: Ensemble, law: int, samples: Sequence[int]) -> Rows:
+        """Rows of some samples, each with waves of its own."""
+        return self._of_draws(ensemble, law, samples)[1].rows(samples)
 
     def _points(self, ensemble: Ensemble, rows: Rows, chosen: Index) -> list[int]:
         """Points of some samples, each at the load of its greatest estimate; the trainer then has their ensemble."""
