@@ -33,10 +33,7 @@ def fine(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def study(fine):
-    """The same on a coarse mesh."""
-    sizes = {name: 2 * size for name, size in fine.geometry.face_size.items()}
-    geometry = replace(fine.geometry, size=2 * fine.geometry.size, face_size=sizes)
-    return replace(fine, geometry=geometry, modes=replace(fine.modes, count=4))
+    return replace(fine, modes=replace(fine.modes, count=4))
 
 
 @pytest.fixture(scope="module")

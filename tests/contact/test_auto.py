@@ -117,7 +117,8 @@ def test_a_series_is_stored_beside_the_scan_and_read_again(tmp_path, monkeypatch
     z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 6, points=64, side=0.5e-3)
     scan = Scan(heights=z, spacing=(0.5e-3 / 64,) * 2)
     solved = []
-    law = HalfSpace(scan, PAIR, cache=tmp_path / "kept", progress=lambda done, total: solved.append((done, total)))
+    told = {"progress": lambda done, total: solved.append((done, total))}
+    law = HalfSpace(scan, PAIR, cache=tmp_path / "kept", points=5, **told)
     first = law.at_pressure(MIDDLE)
     assert solved[-1][0] == solved[-1][1] == len(solved) - 1  # the last call says that all is done
     (file,) = (tmp_path / "kept").iterdir()
