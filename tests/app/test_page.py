@@ -51,6 +51,7 @@ def test_a_scan_is_dropped_and_read(browser, server, example, tmp_path):
     assert (tmp_path / "surface.x3p").read_bytes() == (example / "surface.x3p").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_scan_without_units_asks_for_them_and_takes_them(browser, server, tmp_path):
     heights = spectral((64, 64), spacing=1e-6, D=2.3, Rq=1e-7, longest=3e-5, seed=1).heights * 1e9
     rows = [f"{x} {y} {height:.3f}" for (y, x), height in np.ndenumerate(heights)]
@@ -278,6 +279,7 @@ def test_keyboard_alone_reaches_every_view(browser, server, example, tmp_path):
     assert (tmp_path / "study.toml").read_text().endswith("# typed")
 
 
+@pytest.mark.slow
 def test_nothing_is_cut_off(browser, server, example, tmp_path):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
@@ -317,6 +319,7 @@ def test_the_page_does_what_the_command_line_does(server, example, tmp_path):
     assert json.dumps(found)
 
 
+@pytest.mark.slow
 def test_the_first_screen_leads_and_the_example_opens_in_one_click(browser, server, tmp_path):
     with page_at(browser, server) as page:
         until(page, "document.querySelector('#step-surface').textContent.includes('Missing: a scan')")
@@ -383,6 +386,7 @@ def test_keys_are_explained_completed_and_coloured(browser, server, tmp_path):
         assert painted.rstrip("\n") == page.input_value("#text").rstrip("\n")
 
 
+@pytest.mark.slow
 def test_a_fault_shows_while_it_is_typed(browser, server, example, tmp_path):
     """Before the text is saved, and without the check of the geometry."""
     for name in ("study.toml", "two-blocks.step"):
