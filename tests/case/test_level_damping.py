@@ -27,13 +27,16 @@ def fine(tmp_path_factory):
     path = tmp_path_factory.mktemp("levels") / "study.toml"
     studies.write(path)
     text = path.read_text().replace("levels = []\n", "").replace('["2 kN", "6 kN"]', '"6 kN"')
-    path.write_text(text)
+    path.write_text(text.replace('joint" = "8 mm"', 'joint" = "4 mm"').replace('size = "16 mm"', 'size = "8 mm"'))
     return Study.read(path)
 
 
 @pytest.fixture(scope="module")
 def study(fine):
-    return replace(fine, modes=replace(fine.modes, count=4))
+    """The same on a coarse mesh."""
+    sizes = {name: 2 * size for name, size in fine.geometry.face_size.items()}
+    geometry = replace(fine.geometry, size=2 * fine.geometry.size, face_size=sizes)
+    return replace(fine, geometry=geometry, modes=replace(fine.modes, count=4))
 
 
 @pytest.fixture(scope="module")
