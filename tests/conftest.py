@@ -3,6 +3,7 @@
 import atexit
 import os
 import shutil
+import sys
 import tempfile
 
 import pytest
@@ -14,8 +15,9 @@ from tests.helpers.published import Published
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-# commands that tests start then compile each module once, not at every start
+# workers and commands that tests start then compile each module once, not at every start
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # the workers of a run inherit the folder from the process that starts them
 if "FAYING_CACHE" not in os.environ:

@@ -14,18 +14,16 @@ from faying.notes import INCOMPLETE
 from faying.output.answer import answer
 from faying.reduction.reduce import Reduction
 from faying.study import Study
+from tests.helpers.preloads import pulled
 from tests.helpers.studies import write
 
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    """The blocks of `faying init` on a coarse mesh."""
+    """The blocks of `faying init` on a coarse mesh, at one preload."""
     path = tmp_path_factory.mktemp("blocks") / "study.toml"
     write(path, flat=False)
-    found = Study.read(path)
-    sizes = {name: 2 * size for name, size in found.geometry.face_size.items()}
-    geometry = replace(found.geometry, size=2 * found.geometry.size, face_size=sizes)
-    return replace(found, geometry=geometry, alternatives=(), modes=ModesChoice(count=5, levels=()))
+    return replace(pulled(Study.read(path), 6e3), alternatives=(), modes=ModesChoice(count=5, levels=()))
 
 
 @pytest.fixture(scope="module")

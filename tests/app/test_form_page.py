@@ -111,6 +111,7 @@ def test_text_and_form_follow_each_other(browser, server, example, tmp_path):  #
         page.unroute_all(behavior="ignoreErrors")
 
 
+@pytest.mark.slow
 def test_tables_and_numbers_that_scatter_are_added_and_removed(browser, server, example, tmp_path):  # noqa: F811
     good = put(example, tmp_path)
     with page_at(browser, server) as page:

@@ -20,6 +20,8 @@ def example(tmp_path_factory):
     folder = tmp_path_factory.mktemp("example")
     study = folder / "study.toml"
     template.write(study)
+    (folder / "surface.x3p").unlink()  # of 640 x 640 points; each page reads, draws and fits it
+    write_scan(spectral((128, 128), spacing=5e-6, D=2.2, Rq=1e-6, longest=1e-4, seed=7), folder / "surface.x3p")
     text = study.read_text().replace('model = "auto"', 'model = "jk"').replace('["8 kN", "15 kN"]', '"6 kN"')
     text = text.replace("[modes]\n", "[modes]\nlevels = []\nintervals = false\n")
     text = re.sub("(?m)^(scan|counter) = .*\n", "", text)  # no contact to solve: D and G in place of the scan
@@ -42,13 +44,14 @@ def test_a_scan_is_dropped_and_read(browser, server, example, tmp_path):
         page.set_input_files("#file", example / "surface.x3p")
         page.wait_for_selector("#scan-picture:not([hidden])")
         facts = page.inner_text("#scan-facts")
-        assert "640 x 640" in facts
+        assert "128 x 128" in facts
         assert "psd" in facts
         width = page.evaluate("document.querySelector('#scan-picture img').naturalWidth")
         assert width > 400
     assert (tmp_path / "surface.x3p").read_bytes() == (example / "surface.x3p").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_scan_without_units_asks_for_them_and_takes_them(browser, server, tmp_path):
     heights = spectral((64, 64), spacing=1e-6, D=2.3, Rq=1e-7, longest=3e-5, seed=1).heights * 1e9
     rows = [f"{x} {y} {height:.3f}" for (y, x), height in np.ndenumerate(heights)]
@@ -82,13 +85,12 @@ def test_faces_are_picked_into_a_joint(browser, server, example, tmp_path):
 
 
 @pytest.mark.slow  # test_from_the_text_alone_to_a_result runs a smaller study
-def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, server, tmp_path_factory, tmp_path):
+def test_from_a_step_file_without_names_and_a_scan_to_a_result(browser, server, example, tmp_path_factory, tmp_path):
     """The newcomer's whole session: two files are dropped, nothing is typed."""
     given = tmp_path_factory.mktemp("given")
     lapped(given / "lap.step", size=(60, 30), holes=((15, 15), (45, 15)))
-    write_scan(spectral((128, 128), spacing=5e-6, D=2.2, Rq=1e-6, longest=1e-4, seed=7), given / "surface.x3p")
     with page_at(browser, server) as page:
-        page.set_input_files("#file", [given / "surface.x3p", given / "lap.step"])
+        page.set_input_files("#file", [example / "surface.x3p", given / "lap.step"])
         until(page, "window.fayingView !== undefined")
         page.click("#propose")
         until(page, "document.querySelector('#text').value.includes('[[bolt]]')")
@@ -277,19 +279,21 @@ def test_keyboard_alone_reaches_every_view(browser, server, example, tmp_path):
     assert (tmp_path / "study.toml").read_text().endswith("# typed")
 
 
-@pytest.mark.parametrize(("width", "height"), [(1280, 800), (800, 600), (640, 400)])  # the last: 1280 at 200 % zoom
-def test_nothing_is_cut_off(browser, server, example, tmp_path, width, height):
+@pytest.mark.slow
+def test_nothing_is_cut_off(browser, server, example, tmp_path):
     for name in ("study.toml", "surface.x3p", "two-blocks.step"):
         shutil.copy(example / name, tmp_path)
-    with page_at(browser, server, width=width, height=height) as page:
+    with page_at(browser, server) as page:
         until(page, "document.querySelectorAll('#groups fieldset').length > 5")
-        for name in ("structure", "form", "run", "result", "surface", "steps"):
-            page.click(f"#tab-{name}")
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), name
-        for button in page.locator("button:visible").all():
-            box = button.bounding_box()
-            assert box["x"] >= 0
-            assert box["x"] + box["width"] <= width
+        for width, height in ((1280, 800), (800, 600), (640, 400)):  # the last: 1280 at 200 % zoom
+            page.set_viewport_size({"width": width, "height": height})
+            for name in ("structure", "form", "run", "result", "surface", "steps"):
+                page.click(f"#tab-{name}")
+                assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), name
+            for button in page.locator("button:visible").all():
+                box = button.bounding_box()
+                assert box["x"] >= 0
+                assert box["x"] + box["width"] <= width
 
 
 def test_a_server_that_is_gone_is_said_and_the_text_stays(browser, server, example, tmp_path):
@@ -311,10 +315,11 @@ def test_the_page_does_what_the_command_line_does(server, example, tmp_path):
 
     shutil.copy(example / "surface.x3p", tmp_path)
     found = answer(["surface", "surface.x3p"], tmp_path)
-    assert found["points"] == [640, 640]
+    assert found["points"] == [128, 128]
     assert json.dumps(found)
 
 
+@pytest.mark.slow
 def test_the_first_screen_leads_and_the_example_opens_in_one_click(browser, server, tmp_path):
     with page_at(browser, server) as page:
         until(page, "document.querySelector('#step-surface').textContent.includes('Missing: a scan')")
@@ -381,6 +386,7 @@ def test_keys_are_explained_completed_and_coloured(browser, server, tmp_path):
         assert painted.rstrip("\n") == page.input_value("#text").rstrip("\n")
 
 
+@pytest.mark.slow
 def test_a_fault_shows_while_it_is_typed(browser, server, example, tmp_path):
     """Before the text is saved, and without the check of the geometry."""
     for name in ("study.toml", "two-blocks.step"):

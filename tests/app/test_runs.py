@@ -29,17 +29,17 @@ def run_of(folder, law, *, second=0, preload='"8 kN"', **changed):
 
 
 def test_runs_are_kept_once_and_the_oldest_go(tmp_path, monkeypatch):
-    monkeypatch.setattr("faying.app.runs.MAX_RUNS", 3)
+    monkeypatch.setattr("faying.app.runs.MAX_RUNS", 2)
     runs = Runs(Project.at(tmp_path))
     runs.keep()
     assert runs.names() == []
-    for second in range(5):
+    for second in range(4):
         run_of(tmp_path, "jk", second=second, title=f"run {second}")
         runs.keep()
         runs.keep()
     Runs(Project.at(tmp_path)).keep()  # as another start of the page does
     titles = [one["title"] for one in runs.listed()]
-    assert titles == [f"run {second}" for second in reversed(range(2, 5))]
+    assert titles == [f"run {second}" for second in reversed(range(2, 4))]
     assert sorted(path.name for path in (tmp_path / "results").iterdir()) == ["result.nc"]
 
 
@@ -47,13 +47,13 @@ def test_large_runs_go_earlier_and_the_newest_stays(tmp_path, monkeypatch):
     runs = Runs(Project.at(tmp_path))
     run_of(tmp_path, "jk")
     size = (tmp_path / "results" / "result.nc").stat().st_size
-    for limit, left, start in ((int(2.5 * size), 2, 0), (size // 2, 1, 4)):
+    for limit, left, start in ((int(2.5 * size), 2, 0), (size // 2, 1, 3)):
         monkeypatch.setattr("faying.app.runs.MAX_BYTES", limit)
-        for second in range(4):  # each at a time of its own: the newest of one second is not known
+        for second in range(3):  # each at a time of its own: the newest of one second is not known
             run_of(tmp_path, "jk", second=start + second, title=f"{limit} {second}")
             runs.keep()
         assert len(runs.names()) == left
-        assert runs.listed()[0]["title"] == f"{limit} 3"
+        assert runs.listed()[0]["title"] == f"{limit} 2"
 
 
 def test_runs_of_two_studies_of_a_folder_stay_apart(tmp_path):

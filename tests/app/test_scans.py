@@ -247,6 +247,7 @@ def test_a_map_zooms_and_laws_are_switched(browser, server, scanned):
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
+@pytest.mark.slow
 def test_a_band_is_set_by_keys_and_taken_back(browser, server, rough, tmp_path):
     write_scan(rough.measured, tmp_path / "rough.x3p")
     says = "document.querySelector('#band-says').textContent"

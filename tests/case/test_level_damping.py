@@ -27,7 +27,7 @@ def fine(tmp_path_factory):
     path = tmp_path_factory.mktemp("levels") / "study.toml"
     studies.write(path)
     text = path.read_text().replace("levels = []\n", "").replace('["2 kN", "6 kN"]', '"6 kN"')
-    path.write_text(text)
+    path.write_text(text.replace('joint" = "8 mm"', 'joint" = "4 mm"').replace('size = "16 mm"', 'size = "8 mm"'))
     return Study.read(path)
 
 

@@ -62,6 +62,7 @@ def test_init_and_run(tmp_path, capsys):
         main(["init", str(path)])
     assert stop.value.code == 0
     capsys.readouterr()
+    path.write_text(path.read_text().replace('size = "8 mm"', 'size = "20 mm"').replace('= "4 mm"\n', '= "10 mm"\n', 1))
     with pytest.raises(SystemExit) as stop:
         main(["run", str(path), "--json"])
     assert stop.value.code == 0
@@ -204,7 +205,7 @@ def test_options_of_law_that_do_not_apply_are_faults(options, said, capsys):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a shell of Unix closes the stream")
-@pytest.mark.parametrize("closed", ["2>&-", ">&- 2>&- <&-"])
+@pytest.mark.parametrize("closed", [pytest.param("2>&-", marks=pytest.mark.slow), ">&- 2>&- <&-"])
 def test_a_run_whose_streams_are_closed_ends_as_any_other(closed, tmp_path):
     shutil.copytree(EXAMPLES / "two-blocks", tmp_path / "blocks")
     words = f"{sys.executable} -m faying run blocks/study.toml --no-files {closed}"

@@ -15,8 +15,6 @@ from tests.helpers.studies import write
 def exported(tmp_path_factory):
     folder = tmp_path_factory.mktemp("modes")
     write(folder / "study.toml")
-    text = (folder / "study.toml").read_text()
-    (folder / "study.toml").write_text(text.replace('"8 mm"', '"12 mm"').replace('"4 mm"', '"6 mm"'))
     main_quietly(["modes", str(folder / "study.toml"), "--export", str(folder / "out")])
     return folder
 

@@ -93,7 +93,7 @@ def test_yan_komvopoulos(D: float, ratio: float) -> None:
         assert float(r.pressure) == pytest.approx((Fe + Fp) / A0, rel=1e-9)
 
 
-@settings(max_examples=10)
+@settings(max_examples=5)
 @given(D=st.floats(2.1, 2.8), log_x=st.floats(-2, 4))
 def test_morag_etsion(D: float, log_x: float) -> None:
     G, length, d = 1e-10, 1e-4, D - 1

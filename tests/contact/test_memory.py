@@ -5,7 +5,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import faying
@@ -113,19 +112,18 @@ def test_an_elastic_contact_remembers_nothing():
 
 @pytest.mark.parametrize("asperity", ["KogutEtsion", "JacksonGreen"])
 def test_summits_unload_by_the_fits_of_finite_elements(asperity):
-    """Pressure and stiffness on the way back against adaptive quadrature of each summit's own way."""
+    """Pressure and stiffness on the way back against quadrature of each summit's own way, found to 1e-4."""
     law = GreenwoodWilliamson(density=2e10, radius=20e-6, sigma=0.5e-6, pair=PAIR, asperity=asperity)
     sigma, asperity_law, most = law.sigma, law._asperity, 20e6
     closure = float(law._closure_at(np.array([most]))[0])
     spread = sigma * np.sqrt(2 * np.pi)
 
     def summed(raised, name):
-        def one(z):
-            way = EtsionKligermanKadin(loading=asperity_law, delta_max=z - closure)
-            value = getattr(way.at(max(z - closure - raised, 0.0)), name)
-            return law.density * float(value) * np.exp(-((z / sigma) ** 2) / 2) / spread
-
-        return quad(one, closure + 1e-15, closure + 8 * sigma, limit=400, points=[closure + raised])[0]
+        back = np.linspace(0, 8 * sigma - raised, 20_001)
+        value = getattr(EtsionKligermanKadin(loading=asperity_law, delta_max=raised + back).at(back), name)
+        return np.trapezoid(
+            law.density * value * np.exp(-(((closure + raised + back) / sigma) ** 2) / 2) / spread, back
+        )
 
     for share in (0.7, 0.3, 0.1):
         p = share * most

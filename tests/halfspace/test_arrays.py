@@ -100,7 +100,7 @@ def test_products_do_not_grow_with_the_map(rough):
 @pytest.mark.parametrize("periodic", [True, False])
 @pytest.mark.parametrize(("pressure", "hardness"), [(0.01, None), (0.2, None), (0.002, 0.005)])
 def test_memory_is_what_is_said_and_less_than_twelve_arrays(rough, pressure, hardness, periodic, precision):
-    n = 384
+    n = 256
     h = rough(n)
     solve_half_space(rough(32), 1 / 32, E_star=1.0, pressure=0.01)  # imports
     tracemalloc.start()

@@ -1,4 +1,4 @@
-"""The study of `faying init` under JK of given D and G, at 2 and 6 kN: cheap, with a loss, and with keys to vary."""
+"""The study of `faying init` under JK of given D and G, coarse, at 2 and 6 kN: cheap, with a loss, and keys to vary."""
 
 from pathlib import Path
 
@@ -23,6 +23,7 @@ counterbody = "part"
 """
     + template.TEXT[END:].replace('["8 kN", "15 kN"] ', '["2 kN", "6 kN"]  ')
 )
+TEXT = TEXT.replace('size = "8 mm" ', 'size = "16 mm"').replace('"upper.joint" = "4 mm"', '"upper.joint" = "8 mm"')
 
 
 def write(study: Path, *, force: bool = False, flat: bool = True) -> list[Path]:

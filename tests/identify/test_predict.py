@@ -40,10 +40,7 @@ def study_of(folder, more=SCATTER, **keys):
     path = folder / "study.toml"
     write(path)
     path.write_text(path.read_text() + more)
-    study = Study.read(path)
-    sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
-    geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
-    return replace(study, geometry=geometry, modes=ModesChoice(count=5), **keys)
+    return replace(Study.read(path), modes=ModesChoice(count=5), **keys)
 
 
 @pytest.fixture(scope="module")
@@ -155,9 +152,7 @@ def test_a_run_says_which_scatter_is_in_its_intervals(tmp_path):
     write(path)
     path.write_text(path.read_text().replace("[[joint]]", '[[joint]]\nfriction = "0.1 to 0.6"', 1))
     study = Study.read(path)
-    sizes = {name: 2 * size for name, size in study.geometry.face_size.items()}
-    coarse = replace(study.geometry, size=2 * study.geometry.size, face_size=sizes)
-    notes = run(replace(study, geometry=coarse, modes=ModesChoice(count=2))).notes
+    notes = run(replace(study, modes=ModesChoice(count=2))).notes
     (note,) = [note for note in notes if note.code == "uncertain"]
     assert f"of joint.{study.joints[0].name}.friction the median is taken" in note.text
     assert f"what [uncertain] says, but for joint.{study.joints[0].name}.friction" in note.text

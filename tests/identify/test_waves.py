@@ -33,9 +33,7 @@ def study_of(folder, uncertain, form=""):
         text = text.replace("\n[[bolt]]", f"\n[joint.form]\n{form}\n\n[[bolt]]", 1)
     path.write_text(f"{text}\n[uncertain]\nonly = true\n{uncertain}\n")
     study = Study.read(path)
-    sizes = {name: 2 * size for name, size in study.geometry.face_size.items()}
-    geometry = replace(study.geometry, size=2 * study.geometry.size, face_size=sizes)
-    return replace(study, geometry=geometry, modes=replace(study.modes, count=2))
+    return replace(study, modes=replace(study.modes, count=2))
 
 
 @pytest.fixture(scope="module")

@@ -25,8 +25,8 @@ def alike(one, other):
 @pytest.mark.parametrize(
     ("path", "value", "old", "new"),
     [
-        ("geometry.size", "9 mm", 'size = "8 mm"', 'size = "9 mm"'),
-        ("geometry.size", 9e-3, 'size = "8 mm"', 'size = "0.009 m"'),
+        ("geometry.size", "9 mm", 'size = "16 mm"', 'size = "9 mm"'),
+        ("geometry.size", 9e-3, 'size = "16 mm"', 'size = "0.009 m"'),
         ("bolt.preload", ["1 kN", "3 kN"], 'preload = ["2 kN", "6 kN"]', 'preload = ["1 kN", "3 kN"]'),
         ("bolt.bolt.preload", [1e3, np.float64(3e3)], 'preload = ["2 kN", "6 kN"]', 'preload = ["1 kN", "3 kN"]'),
         ("law.cutoff", 0.02, "cutoff = 0.01", "cutoff = 0.02"),

@@ -116,11 +116,8 @@ def test_waves_of_another_file_of_the_same_study_are_the_same(path):
 
 @pytest.fixture(scope="module")
 def coarse(path):
-    study = Study.read(path)
-    sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
-    geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
     # the blocks are 30 mm wide: waves from 8 to 15 mm in place of those above the side of the scan
-    return replace(study, geometry=geometry, modes=ModesChoice(count=4, levels=()))
+    return replace(Study.read(path), modes=ModesChoice(count=4, levels=()))
 
 
 @pytest.fixture(scope="module")

@@ -27,6 +27,7 @@ def study(folder, preload, state=""):
     path = folder / "study.toml"
     write(path, force=True, flat=False)
     text = path.read_text(encoding="utf-8").replace("levels = []", 'levels = ["1 m/s^2"]')
+    text = text.replace('joint" = "8 mm"', 'joint" = "4 mm"').replace('size = "16 mm"', 'size = "8 mm"')
     text = text[: text.index("[surface]")] + KE + text[text.index("[[joint]]") :]
     text = text.replace('["2 kN", "6 kN"]', json.dumps(preload))
     text = text.replace("[[joint]]\n", "[[joint]]\ntangential = 0.6\n" + f'state = "{state}"\n' * bool(state), 1)

@@ -32,8 +32,8 @@ def study(folder, **changes):
 def test_the_template_is_a_study(folder):
     s = study(folder)
     assert s.loads == (2000.0, 6000.0)
-    assert s.geometry.size == pytest.approx(8e-3)
-    assert s.geometry.face_size == {"upper.joint": pytest.approx(4e-3)}
+    assert s.geometry.size == pytest.approx(16e-3)
+    assert s.geometry.face_size == {"upper.joint": pytest.approx(8e-3)}
     assert s.surface.G == pytest.approx(1.53e-10)
     assert s.law.given["closure"] == "consistent"
     assert s.loads == (2000.0, 6000.0)

@@ -31,9 +31,7 @@ def plan(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "study.toml"
     write(path)
     study = Study.read(path)
-    sizes = {name: 1.6 * size for name, size in study.geometry.face_size.items()}
-    geometry = replace(study.geometry, size=1.6 * study.geometry.size, face_size=sizes)
-    return replace(study, preloads=study.preloads[-1:], geometry=geometry, modes=ModesChoice(count=5), test=None)
+    return replace(study, preloads=study.preloads[-1:], modes=ModesChoice(count=5), test=None)
 
 
 AXES = ("surface.D=2.3:2.42:4", "bolt.preload=1 kN:3 kN:3")
