@@ -1,7 +1,7 @@
 """One asperity by finite elements: an elastic-plastic cap on its substrate under a smooth rigid plane.
 
-A program beside the library, which takes one number from it (`faying.contact.substrate.OWN_MODULUS`) and whose tests
-press it beside the published laws of one asperity. See docs/theory/asperity-fe.md.
+A program beside the library, whose tests press it beside the published laws of one asperity. See
+docs/theory/asperity-fe.md.
 """
 
 from asperity_fe.drive import solve_asperity

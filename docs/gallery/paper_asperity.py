@@ -14,7 +14,6 @@ from faying.contact.asperity.base import AsperityModel
 from faying.contact.asperity.jk import JK
 from faying.contact.asperity.kogut_etsion import KogutEtsion
 from faying.contact.asperity.lin_lin import LinLin
-from faying.contact.asperity.zx import ZX
 from faying.contact.substrate import asperity_share
 from faying.materials import RIGID, ContactPair, Material
 from faying.style import new_panels, save
@@ -58,28 +57,23 @@ def single_models() -> dict[str, AsperityModel]:
         "JK": JK(R=R, pair=PAIR, closure="printed"),
         "KE": KogutEtsion(R=R, pair=PAIR),
         "LL-2005": LinLin(R=R, pair=PAIR),
-        "ZX (reconstructed)": ZX(R=R, pair=PAIR, D=2.39, height=HEIGHT),
     }
 
 
 def dimensionless(model: AsperityModel, x: Array) -> dict[str, Array]:
-    """Return f/(pi R delta H), a/(pi R delta) and p/H, eqs. (21), (22), at x = delta/d1c of the undeformed cap.
-
-    ZX counts its own radius, which follows the truncated area.
-    """
+    """Return f/(pi R delta H), a/(pi R delta) and p/H, eqs. (21), (22), at x = delta/d1c of the undeformed cap."""
     delta = x * LinLin(R=R, pair=PAIR).critical
     r = model.at(delta)
-    radius = model.R * (delta / model.height) ** model._power if isinstance(model, ZX) else np.full_like(delta, R)
-    unit = pi * radius * delta
+    unit = pi * R * delta
     return {"f": r.force / (unit * HARDNESS), "a": r.area / unit, "p": r.pressure / HARDNESS}
 
 
 def figure_6() -> Any:
-    """Draw dimensionless load, area and mean pressure against interference for JK, KE, LL-2005 and ZX."""
+    """Draw dimensionless load, area and mean pressure against interference for JK, KE and LL-2005."""
     x = np.geomspace(0.1, 300, 1200)
     fig = new_panels(3)
     labels = {"f": "f/(pi R delta H)", "a": "a/(pi R delta)", "p": "mean pressure / H"}
-    styles = {"JK": "-", "KE": "-", "LL-2005": "--", "ZX (reconstructed)": "-."}
+    styles = {"JK": "-", "KE": "-", "LL-2005": "--"}
     for ax, (key, label) in zip(fig.axes, labels.items(), strict=True):
         for name, model in single_models().items():
             ax.semilogx(x, dimensionless(model, x)[key], styles[name], label=name)

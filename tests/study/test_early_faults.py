@@ -50,7 +50,6 @@ def no_mesh(monkeypatch):
         ({"model": "gw", **IN_FULL}, "GW defines no tangential stiffness"),
         ({"model": "gw-ke"}, "needs|smoothed"),
         ({"model": "jk", "alpha": 1.5}, "alpha = 1.5"),
-        ({"model": "jk", "substrate": "computed", "modulus_ratio": 30.0}, "modulus_ratio = 30.0"),
     ],
 )
 def test_faults_of_a_law_come_before_the_mesh(study, no_mesh, law, message):

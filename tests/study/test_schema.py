@@ -84,7 +84,7 @@ def test_faults(folder, changes, text):
         study(folder, **changes)
 
 
-@pytest.mark.parametrize("share", ["exact", "computed", 0.9])
+@pytest.mark.parametrize("share", ["exact", 0.9])
 def test_what_the_substrate_takes(folder, share):
     assert study(folder, law__substrate=share).law.given["substrate"] == share
 

@@ -9,11 +9,9 @@ from .kogut_etsion import KogutEtsion
 from .lin_lin import LinLin
 from .unloading import Brake, EtsionKligermanKadin, load_index
 from .zhao_maietta_chang import ZhaoMaiettaChang
-from .zx import ZX
 
 __all__ = [
     "JK",
-    "ZX",
     "AsperityModel",
     "AsperityResponse",
     "Brake",

@@ -149,13 +149,9 @@ def models() -> dict[str, type[AsperityModel]]:
 
 
 def summed_model(name: str, law: str) -> type[AsperityModel]:
-    """Return the model called `name`, in any case and with or without hyphens, for a law that sums asperities.
-
-    All but ZX, whose radius follows its own area. InputError, from `law`, lists them.
-    """
-    known = {key: cls for key, cls in models().items() if key != "ZX"}
-    plain = {key.lower(): cls for key, cls in known.items()}
+    """Return the model called `name`, in any case and with or without hyphens; InputError, from `law`, lists them."""
+    plain = {key.lower(): cls for key, cls in models().items()}
     cls = plain.get(name.lower().replace("-", "").replace("_", "")) if isinstance(name, str) else None
     if cls is None:
-        raise InputError(f"{law}: asperity = {shown(name)}; use one of {', '.join(known)}")
+        raise InputError(f"{law}: asperity = {shown(name)}; use one of {', '.join(models())}")
     return cls

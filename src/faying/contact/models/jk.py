@@ -21,9 +21,7 @@ Where the print is ambiguous or wrong we read it so:
   of the meso stage above D = 2.76, with 0.3 above D = 2.5: there the cut-off leaves too little of the elastic part;
 - eqs. 49-53 give dissipated over stored energy, the specific damping capacity (`specific_damping`); the loss factor of
   this project, and of the modes, is that over 2 pi;
-- asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14);
-- substrate="computed" is not the paper's: the asperity takes all of delta with the effective modulus that finite
-  elements found (`substrate`); its k_n is d(force)/d(delta), its energies those of a sphere of that modulus.
+- asperities at hardness add no stiffness, normal or tangential, as printed (eqs. A8, A14).
 """
 
 from collections.abc import Sequence
@@ -39,20 +37,11 @@ from faying.contact.law import ContactLaw, Response, checked, require
 from faying.contact.measured_range import MeasuredRange
 from faying.contact.models.islands import Islands, covering
 from faying.contact.parameter import FRACTAL, GAMMA, TEXT, Parameter
-from faying.contact.substrate import (
-    MAX_RATIO,
-    SHAPE,
-    MixedIslands,
-    WeightedIslands,
-    asperity_share,
-    mixed_place,
-    substrate_share,
-)
+from faying.contact.substrate import SHAPE, WeightedIslands, asperity_share, substrate_share
 from faying.materials import ContactPair
 from faying.typing import Array
 
-SOFTNESS = {"force": 2, "area": 2, "k_n": 0, "k_t": 0, "energy_n": 4, "energy_t": 4}  # power of the compliance
-QUANTITIES = tuple(SOFTNESS)
+QUANTITIES = ("force", "area", "k_n", "k_t", "energy_n", "energy_t")
 Term = tuple[float, float]  # coefficient and power of y
 
 
@@ -118,8 +107,7 @@ class JK(ContactLaw):
     """Contact of a fractal surface over its small, meso and large stage.
 
     Closure variable: the largest truncated area al' [m2]. Valid while real area <= 0.3, k_n below that of the bulk,
-    al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9; with substrate="computed" also modulus_ratio 1 to 4 and h_a/R up
-    to 0.075.
+    al' <= al3', al1' < al2' < al3', 2.1 <= D <= 2.9.
 
     Args:
         D: surface dimension, 2 < D < 3.
@@ -129,9 +117,8 @@ class JK(ContactLaw):
         gamma: frequency index, above 1.
         alpha: elastic-plastic load index, 0 to 1.
         closure: "consistent" takes exponents that make the law continuous, "printed" those of the paper.
-        substrate: share lam of the deformation that the asperity takes (a constant), "exact" for eq. (1) at every
-            asperity, or "computed" for the effective modulus found by finite elements; the last two with
-            modulus_ratio and the asperity's E in the pair.
+        substrate: share lam of the deformation that the asperity takes (a constant), or "exact" for eq. (1) at every
+            asperity, with modulus_ratio and the asperity's E in the pair.
         cutoff: least area that adds stiffness, over the smaller of a1c' and al'.
         loss: "held" keeps the loss factor that the small stage ends with, "literal" evaluates eqs. (49) to (53).
         shear_ratio: X = T/(mu F), 0 <= X < 1.
@@ -153,7 +140,7 @@ class JK(ContactLaw):
     gamma: float = 1.5
     alpha: float = 0.2
     closure: Literal["consistent", "printed"] = "consistent"
-    substrate: float | Literal["exact", "computed"] = 1.0
+    substrate: float | Literal["exact"] = 1.0
     cutoff: float = 0.01
     loss: Literal["held", "literal"] = "held"
     shear_ratio: float = 0.0
@@ -174,9 +161,7 @@ class JK(ContactLaw):
         "closure": Parameter(
             TEXT, "exponents and borders of the elastic-plastic regime", choices=("consistent", "printed")
         ),
-        "substrate": Parameter(
-            "", "share of the deformation that the asperity takes", 0, 1, "(]", choices=("exact", "computed")
-        ),
+        "substrate": Parameter("", "share of the deformation that the asperity takes", 0, 1, "(]", choices=("exact",)),
         "cutoff": Parameter("", "least area that adds stiffness, over the smaller of a1c' and al'", 0, 1),
         "loss": Parameter(TEXT, "loss factor above the small stage", choices=("held", "literal")),
         "shear_ratio": Parameter("", "tangential load over mu times normal load", 0, 1, "[)"),
@@ -193,10 +178,6 @@ class JK(ContactLaw):
             "stiffness; lower the shear load or raise the preload",
         )
         super().__post_init__()
-        need(
-            self.substrate != "computed" or self.modulus_ratio <= MAX_RATIO,
-            f'modulus_ratio = {self.modulus_ratio} with substrate="computed"; it goes up to {MAX_RATIO:g}',
-        )
         need(
             self.shear_stress == 0 or self.shear_ratio == 0,
             f"shear_ratio = {self.shear_ratio} and shear_stress = {self.shear_stress:.6g} Pa; give one of them",
@@ -216,8 +197,6 @@ class JK(ContactLaw):
     def _islands(self) -> Islands:
         if self.substrate == "exact":
             return WeightedIslands(self.D, self.psi, self.modulus_ratio)
-        if self.substrate == "computed":
-            return MixedIslands(self.D, self.psi, self.modulus_ratio)
         return Islands(self.D, self.psi)
 
     @cached_property
@@ -250,13 +229,10 @@ class JK(ContactLaw):
         elif self.substrate == "exact":
             reach = SHAPE * float(asperity_share(SHAPE, self.modulus_ratio))
         else:
-            reach = SHAPE * (1.0 if self.substrate == "computed" else self.substrate)
+            reach = SHAPE * self.substrate
         base = KH**2 / (2 ** (9 - 2 * D) * pi ** (D - 4) * self.pair.E_star**2 * log(self.gamma)) / reach
         log_al2 = (log(base) - 2 * (D - 2) * log(self.G)) / (2 - D)  # eqs. (26), (27)
         log_al1 = log_al2 - log(x_p) / (D - 2)
-        if isinstance(self._islands, MixedIslands) and self.closure == "consistent":
-            slopes = self._yield_strain * np.sqrt(np.array([x_p, 1.0]) / (2 * SHAPE))  # h_a/r_a there, without it
-            log_al1, log_al2 = (log_al1, log_al2) - 2 * self._islands.log_compliance(slopes) / (D - 2)
         al3 = self.scan_area * (3 - D) / self._islands.weight  # eq. (28)
         with np.errstate(over="ignore", under="ignore"):
             return float(np.exp(log_al1)), float(np.exp(log_al2)), al3
@@ -280,8 +256,6 @@ class JK(ContactLaw):
                 return y * d1c / h_a  # a1c'/al', a2c'/al', eqs. (10), (11)
             if self.substrate == "exact":
                 return substrate_share(y * d1c / h_a, self.modulus_ratio)
-            if self.substrate == "computed":
-                return mixed_place(y / scale, self._slope(al), self.modulus_ratio)
             return y / scale
 
         first, second = np.minimum(border(1.0), 1.0), np.minimum(border(x_p), 1.0)
@@ -305,18 +279,9 @@ class JK(ContactLaw):
                     lower = self.cutoff * upper
                 part = np.zeros_like(al)
                 for coefficient, power in getattr(regime, quantity):
-                    part = part + coefficient * scale**power * self._total(quantity, power, lower, upper, al)
+                    part = part + coefficient * scale**power * self._islands.total(power, lower, upper)
                 sums.append(units[quantity] * part)
         return out
-
-    def _slope(self, al: Array) -> Array:
-        """h_a/r_a [-] of the caps."""
-        return self._cap(al)[0] / np.sqrt(al / pi)
-
-    def _total(self, quantity: str, power: float, lower: Array, upper: Array, al: Array) -> Array:
-        if not isinstance(self._islands, MixedIslands):
-            return self._islands.total(power, lower, upper)
-        return self._islands.mixed(power, SOFTNESS[quantity], lower, upper, self._slope(al), tangent=quantity == "k_n")
 
     def _shear(self, parts: dict[str, list[Array]]) -> list[Array]:
         """X = T/(mu F) of each regime, at most 1 (eq. A11)."""
@@ -394,7 +359,6 @@ class JK(ContactLaw):
                 "the limits of the stages are not in the order al1' < al2' < al3'": np.full(
                     a.shape, not al1 < al2 < al3
                 ),
-                **(self._islands.ground(self._slope(a)) if isinstance(self._islands, MixedIslands) else {}),
                 "D outside 2.1 to 2.9": np.full(a.shape, not 2.1 <= self.D <= 2.9),
                 "tau exceeds friction over the elastic or elastic-plastic asperities, which slip": np.asarray(
                     np.maximum(shear[0], shear[1]) >= 1
