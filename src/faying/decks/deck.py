@@ -96,7 +96,7 @@ class JointDeck:
     """One joint, ready to be written.
 
     pairs: its springs; mesh: of the model, with its node numbers; faces: their names; facts: lines for the header;
-    viscous [N s/m] (p, 3, 3): dampers, None where no frequency is given; paper: they are the JK paper's; first_element:
+    viscous [N s/m] (p, 3, 3): dampers, None where no frequency is given; first_element:
     the number from which elements are numbered; contact: None where the law gives no curve.
     """
 
@@ -106,7 +106,6 @@ class JointDeck:
     system: UnitSystem
     facts: tuple[str, ...]
     viscous: Array | None = None
-    paper: bool = False
     frequency: float | None = None
     first_element: int = 1
     contact: ContactProperty | None = None
@@ -157,14 +156,9 @@ class JointDeck:
         """Comment lines: the facts of the joint and the notes of this form."""
         return comments(mark, *self.facts, *more)
 
-    def own(self) -> tuple[Array, Array, Array]:
-        """Stiffness, loss and the JK paper's dampers (p, 3) along the pairs' own axes; InputError as `NodePairs.own`.
-
-        Dampers of 0 where loss factors stand in their place.
-        """
-        k, lost = self.pairs.own(self.stiffness), self.pairs.own(self.loss)
-        dampers = self.dampers if self.paper else None
-        return k, lost, np.zeros_like(k) if dampers is None else self.pairs.own(dampers)
+    def own(self) -> tuple[Array, Array]:
+        """Stiffness and loss (p, 3) along the pairs' own axes; InputError as `NodePairs.own`."""
+        return self.pairs.own(self.stiffness), self.pairs.own(self.loss)
 
     def damping_note(self) -> str:
         """A sentence on the dampers of a form that takes no loss factor."""
@@ -172,11 +166,6 @@ class JointDeck:
             return (
                 "no dampers: this form takes no loss factor, and no frequency was given at which viscous dampers "
                 'c = eta k/omega stand for it (--frequency "500 Hz")'
-            )
-        if self.paper:
-            return (
-                "dampers after the JK paper, c = eta sqrt(M k) pair by pair, M the whole mass: their sum grows with "
-                "the square root of the number of pairs, so the damping depends on the mesh"
             )
         return f"dampers c = eta k/omega, right at {self.frequency:g} Hz: loss grows with frequency beyond it"
 
