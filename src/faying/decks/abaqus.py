@@ -378,10 +378,16 @@ def contact(deck: JointDeck) -> str:
 
 
 def condensed(deck: CondensedDeck) -> dict[str, str]:
-    """Two nodes and the joint between them as a matrix, to include in an input deck before its first step, by name."""
+    """Points and matrices between them, to include in an input deck before its first step, by name.
+
+    A mode is direction 1 of a node of its own.
+    """
     matrices = [("STIFFNESS", "KJ", deck.in_units(deck.stiffness))]
+    if deck.mass is not None:
+        matrices.append(("MASS", "MJ", deck.in_units(deck.mass)))
     if np.any(deck.loss):
         matrices.append(("STRUCTURAL DAMPING", "SJ", deck.in_units(deck.loss)))
     lines = [*comments("**", *deck.facts, *([STRUCTURAL] if np.any(deck.loss) else [])), "*NODE"]
     lines += [f"{node},{reals(at)}" for node, at in zip(deck.nodes, deck.places, strict=True)]
-    return {"condensed_matrix.inp": "\n".join([*lines, *_assembled(deck.entries, matrices)]) + "\n"}
+    lines += [f"{number},{reals(deck.places[0])}" for number in deck.modes]
+    return {f"{deck.name}_matrix.inp": "\n".join([*lines, *_assembled(np.maximum(deck.entries, 1), matrices)]) + "\n"}

@@ -294,17 +294,23 @@ COUPLED = 1e-2  # of the mean of two diagonals: a coupling above it a CBUSH cann
 
 
 def condensed(deck: CondensedDeck) -> dict[str, str]:
-    """Bulk data of a condensed joint, by name: a DMIG, and a CBUSH where both points coincide and little couples."""
+    """Bulk data of matrices, by name: DMIG; of a joint also a CBUSH where both points coincide and little couples."""
     grids: list[str] = []
     for node, at in zip(deck.nodes, deck.places, strict=True):
         grids += card("GRID", node, 0, *map(float, at), 0)
-    chosen = ["case control: K2GG = KJOINT"]
-    lines = _dmig("KJOINT", deck.entries, deck.in_units(deck.stiffness))
-    if np.any(deck.loss):
-        chosen.append("case control: K42GG = K4JOINT, the loss as a structural damping matrix")
-        lines += _dmig("K4JOINT", deck.entries, deck.in_units(deck.loss))
-    out = {"condensed_dmig.bdf": "\n".join([*comments("$", *deck.facts, *chosen), *grids, *lines]) + "\n"}
-    bush = _bush(deck)
+    scalar = [line for number in deck.modes for line in card("SPOINT", number)]
+    matrices = {"K2GG": ("KJOINT", deck.stiffness), "K42GG": ("K4JOINT", deck.loss)}
+    if deck.mass is not None:
+        matrices = {"K2GG": ("KAAX", deck.stiffness), "M2GG": ("MAAX", deck.mass), "K42GG": ("K4AAX", deck.loss)}
+    chosen, lines = [], []
+    for command, (name, matrix) in matrices.items():
+        if np.any(matrix):
+            more = ", the loss as a structural damping matrix" if command == "K42GG" else ""
+            chosen.append(f"case control: {command} = {name}{more}")
+            lines += _dmig(name, deck.entries, deck.in_units(matrix))
+    head = [*comments("$", *deck.facts, *chosen), *grids, *scalar]
+    out = {f"{deck.name}_dmig.bdf": "\n".join([*head, *lines]) + "\n"}
+    bush = None if deck.mass is not None else _bush(deck)
     if bush:
         note, cards = bush
         out["condensed_cbush.bdf"] = "\n".join([*comments("$", *deck.facts, note), *grids, *cards]) + "\n"
