@@ -24,6 +24,7 @@ from .export.condense import condense as condense
 from .export.matrix_modes import MatrixModes as MatrixModes
 from .export.matrix_modes import matrix_modes as matrix_modes
 from .export.matrix_modes import modes_with_joint as modes_with_joint
+from .export.superelement import superelement as superelement
 from .fe.mesh import Mesh as Mesh
 from .form.fit import fit_form as fit_form
 from .form.fit import minimum_zone as minimum_zone

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
+from faying.decks.deck import CondensedDeck, UnitSystem, six_each, write_condensed
 from faying.decks.programs import CONDENSED, module_of
 from faying.fe.elasticity import unit_motions
 
@@ -33,6 +33,7 @@ def deck(unit="mm", force="N", first=(0.01, -0.02, 0.03), second=(0.01, -0.02, 0
         points=points,
         nodes=NODES,
         element=40,
+        entries=six_each(NODES),
         stiffness=turn.T @ K @ turn,
         loss=turn.T @ C @ turn,
         system=UnitSystem(unit, force),

@@ -241,17 +241,6 @@ def test_the_command_gives_modes(tmp_path, capsys):
     assert "does not state its units" in err
 
 
-def test_paper_dampers(tmp_path):
-    """c = eta sqrt(M k) of each pair, M the whole mass."""
-    found = attached(tmp_path, damping="paper")
-    pairs = found.pairs
-    k, eta = pairs.own(pairs.stiffness), pairs.own(pairs.loss) / pairs.own(pairs.stiffness)
-    mass = faying.CATALOGUE["45 steel"].density * 0.1 * 6e-4
-    assert pairs.own(found.deck.viscous) == pytest.approx(eta * np.sqrt(mass * k), rel=1e-9)
-    with pytest.raises(faying.InputError, match="JK paper's dampers belong to pairs of nodes"):
-        attached(tmp_path, damping="paper", coupling="faces")
-
-
 def test_faces_with_nodes_without_partner(tmp_path):
     """The second block is half as wide: what sticks out is told, and carries nothing."""
     wide = row([0.06], [2], kinds=("hex8",), sections=((4, 2),), width=0.04, height=0.02)

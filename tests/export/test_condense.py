@@ -13,18 +13,13 @@ from faying.cli.main import cli
 from faying.export.condense import condense
 from faying.output.terminal import text as shown
 from faying.study import Study
-from tests.helpers.studies import write
+from tests.helpers.studies import write_coarse
 
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "study.toml"
-    write(path)
-    text = path.read_text()
-    at = text.index("[geometry]")
-    size = next(line for line in text[at:].splitlines() if line.startswith("size"))
-    rough = "\n".join(line for line in text.splitlines() if not line.startswith("face_size"))
-    path.write_text(rough.replace(size, 'size = "20 mm"').replace("count = 6", "count = 3"))
+    write_coarse(path)
     return path
 
 

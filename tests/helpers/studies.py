@@ -40,3 +40,13 @@ def write(study: Path, *, force: bool = False, flat: bool = True) -> list[Path]:
         text = text.replace("\n[[bolt]]", "\n[joint.form]\nflat = true\n\n[[bolt]]", 1)
     study.write_text(text, encoding="utf-8")
     return made
+
+
+def write_coarse(path: Path) -> None:
+    """Write that study with elements of 20 mm and three modes."""
+    write(path)
+    text = path.read_text()
+    at = text.index("[geometry]")
+    size = next(line for line in text[at:].splitlines() if line.startswith("size"))
+    rough = "\n".join(line for line in text.splitlines() if not line.startswith("face_size"))
+    path.write_text(rough.replace(size, 'size = "20 mm"').replace("count = 6", "count = 3"))

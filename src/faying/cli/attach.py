@@ -45,13 +45,6 @@ from faying.text import json_text
 @click.option(
     "--frequency", metavar="FREQUENCY", help="Frequency at which viscous dampers c = eta k/omega give the loss factor."
 )
-@click.option(
-    "--damping",
-    type=click.Choice(["loss", "paper"]),
-    default="loss",
-    show_default=True,
-    help="paper: the JK paper's dampers eta sqrt(M k), which depend on the mesh.",
-)
 @click.option("--to", "solver", type=click.Choice(SOLVERS), help="The solver to write for.")
 @click.option("--out", type=PATH, help="Folder of the decks (default: joint/ next to the model).")
 @click.option("--any-size", is_flag=True, help="Accept a joint of any area.")

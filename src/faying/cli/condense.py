@@ -1,4 +1,4 @@
-"""faying condense STUDY.toml: one joint as a 6 x 6 stiffness and loss between two points."""
+"""faying condense STUDY.toml: a joint as a 6 x 6 stiffness between two points, or the whole as a superelement."""
 
 from pathlib import Path
 from typing import Any
@@ -6,11 +6,11 @@ from typing import Any
 import click
 
 from faying import units
-from faying.cli.options import PATH
+from faying.cli.options import PATH, show
 from faying.cli.progress import Form, Shown, progress_options
-from faying.decks.programs import CONDENSED
+from faying.decks.programs import CONDENSED, REDUCED
 from faying.errors import InputError
-from faying.text import json_text
+from faying.text import toml
 from faying.units import load_text
 
 WORDS = ("x", "y", "z", "turn x", "turn y", "turn z")
@@ -24,7 +24,16 @@ NUMBER = click.IntRange(1, 99_999_999)  # eight digits, the field of a bulk data
 @click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
 @click.option("--point-a", metavar="POINT", help='Point of the first face, "0 mm; 10 mm; 5 mm" (default: its centre).')
 @click.option("--point-b", metavar="POINT", help="Point of the second face.")
-@click.option("--to", "solver", type=click.Choice(CONDENSED), help="The solver to write for.")
+@click.option("--superelement", "whole", is_flag=True, help="The whole structure, reduced to interfaces and modes.")
+@click.option(
+    "--interface",
+    "interfaces",
+    multiple=True,
+    metavar="FACE|POINT",
+    help="Of the superelement, once for each: a face by its name or selector, as in a study, or a point.",
+)
+@click.option("--up-to", metavar="FREQUENCY", help="Of the superelement: where its modes end (default: the study's).")
+@click.option("--to", "solver", type=click.Choice(sorted({*CONDENSED, *REDUCED, "npz"})), help="What to write for.")
 @click.option("--unit", help='Unit of length of that model, such as "mm".')
 @click.option("--force-unit", default="N", show_default=True, help="Unit of force of that model.")
 @click.option("--node-a", type=NUMBER, default=900001, show_default=True, help="Number of the first point's node.")
@@ -39,6 +48,9 @@ def command(
     preload: str | None,
     point_a: str | None,
     point_b: str | None,
+    whole: bool,
+    interfaces: tuple[str, ...],
+    up_to: str | None,
     solver: str | None,
     unit: str | None,
     force_unit: str,
@@ -49,30 +61,30 @@ def command(
     as_json: bool,
     progress: Form | None,
 ) -> None:
-    """Condense a joint of STUDY to a 6 x 6 stiffness between two points, with the error of that."""
+    """Condense a joint of STUDY to a 6 x 6 stiffness between two points, or all of STUDY to a superelement."""
     from faying.export.condense import condense
+    from faying.export.superelement import superelement
     from faying.output.table import text
     from faying.study import Study
 
-    if solver is not None and unit is None:
+    if solver not in (None, "npz") and unit is None:
         raise InputError('--to needs --unit, the unit of length of that model, such as "mm"')
+    if whole and (joint or point_a or point_b):
+        raise InputError("--joint, --point-a and --point-b are of one joint; a superelement has --interface")
+    if not whole and (interfaces or up_to):
+        raise InputError("--interface and --up-to are of a superelement; add --superelement")
     plan = Study.read(study)
+    folder, system = out or plan.folder / "joint", {"unit": unit or "m", "force_unit": force_unit}
+    if whole:
+        with Shown("condense", progress) as report:
+            made = superelement(plan, [*map(_interface, interfaces)], up_to=up_to, preload=preload, report=report)
+        files = made.write(solver, folder, **system, node=node_a) if solver else []
+        show(as_json, made.to_dict, lambda: f"{made}\n\n{text(made.rows())}", files, folder)
+        return
     points = (_point(point_a, "--point-a"), _point(point_b, "--point-b"))
     with Shown("condense", progress) as report:
         found = condense(plan, joint=joint, preload=preload, points=points, report=report)
-    files: list[Path] = []
-    if solver is not None:
-        files = found.write(
-            solver,
-            out or plan.folder / "joint",
-            unit=unit or "",
-            force_unit=force_unit,
-            nodes=(node_a, node_b),
-            element=element,
-        )
-    if as_json:
-        click.echo(json_text(found.to_dict() | {"files": [str(f) for f in files]}))
-        return
+    files = found.write(solver, folder, **system, nodes=(node_a, node_b), element=element) if solver else []
     place = ", ".join(f"{x:.4g}" for x in (1e3 * found.joint.point).round(6) + 0.0)
     lines = [
         f"{found.name} at {load_text(found.load)}, about ({place}) mm: stiffness [N/m, N, N m]",
@@ -86,7 +98,7 @@ def command(
         else "mean ties err by more than 1 % in the first mode already",
         *(f"written: {file}" for file in files),
     ]
-    click.echo("\n".join(lines))
+    show(as_json, found.to_dict, lambda: "\n".join(lines), files if as_json else ())
 
 
 def _matrix(values: Any) -> list[str]:
@@ -106,3 +118,13 @@ def _point(given: str | None, name: str) -> Any:
     if len(parts) != 3:
         raise InputError(f'{name} "{given}": give three lengths with semicolons between, such as "0 mm; 10 mm; 5 mm"')
     return np.array([units.parse(part.strip(), "m", name=name) for part in parts])
+
+
+def _interface(given: str) -> Any:
+    """A face by its name or as a selector, or a point."""
+    if given.lstrip().startswith("{"):
+        try:
+            return toml(f"face = {given}")["face"]
+        except ValueError as fault:
+            raise InputError(f"--interface '{given}' is not a selector: {fault}") from None
+    return _point(given, "--interface") if ";" in given else given

@@ -19,7 +19,7 @@ COMMANDS = {
     "bolts": ("bolts", "A sheet for each bolt by VDI 2230: preload, stresses, slip, torque."),
     "check": ("check", "Check a study without solving it: faults, notes, memory, time."),
     "compare": ("measured.compare", "Compare a hammer test with the result of a study: MAC, pairs, FRFs."),
-    "condense": ("condense", "One joint as a 6 x 6 stiffness and loss between two points, with its error."),
+    "condense": ("condense", "One joint as a 6 x 6 stiffness, or the structure as a superelement, with the error."),
     "doctor": ("doctor", "What works on this machine, and what to do about the rest."),
     "faces": ("faces", "Faces of a STEP or mesh file: numbers, normals, centres, contacts."),
     "form": ("scan.form", "Flatness, crowns and twist of a measured face or gap."),

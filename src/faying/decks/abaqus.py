@@ -316,14 +316,12 @@ def spring2(deck: JointDeck) -> str:
 
 def connector(deck: JointDeck) -> str:
     """Write CONN3D2 elements of type CARTESIAN: component 1 is the normal; loss factors as structural damping."""
-    k, lost, dampers = deck.own()
+    k, lost = deck.own()
     ratio = np.divide(lost, k, out=np.zeros_like(k), where=k != 0)
-    note = deck.damping_note() if dampers.any() else "loss factors as structural damping of each component"
     axes, group = orientations(deck)
-    lines = [*deck.header("**", note), *axes]
+    lines = [*deck.header("**", "loss factors as structural damping of each component"), *axes]
     one, two = deck.ends
-    key = [group, k / np.abs(k).max(), ratio, dampers / max(np.abs(dampers).max(), 1e-300)]
-    first, alike = grouped(np.column_stack(key))
+    first, alike = grouped(np.column_stack([group, k / np.abs(k).max(), ratio]))
     number = count(deck.first_element)
     for g, (leader, some) in enumerate(zip(first, members(alike), strict=True)):
         lines.append(f"*ELEMENT,TYPE=CONN3D2,ELSET=JN{g}")
@@ -332,24 +330,18 @@ def connector(deck: JointDeck) -> str:
         lines.append(f"*CONNECTOR BEHAVIOR,NAME=JB{g}")
         for c in range(3):
             lines += [f"*CONNECTOR ELASTICITY,COMPONENT={c + 1}", f"{real(k[leader, c], 20)},"]
-            if dampers.any():
-                lines += [f"*CONNECTOR DAMPING,COMPONENT={c + 1}", f"{real(dampers[leader, c], 20)},"]
-            elif ratio[leader, c]:
+            if ratio[leader, c]:
                 lines += [f"*CONNECTOR DAMPING,COMPONENT={c + 1},TYPE=STRUCTURAL", f"{real(ratio[leader, c], 20)},"]
     return "\n".join(lines) + "\n"
 
 
 def matrix(deck: JointDeck) -> str:
-    """Write the joint as sparse matrices: stiffness, and structural damping or, after the JK paper, viscous."""
+    """Write the joint as sparse matrices: stiffness, and structural damping."""
     blocks = [("STIFFNESS", "KJ", deck.stiffness)]
-    note = STRUCTURAL
-    if deck.paper and deck.dampers is not None:
-        blocks.append(("VISCOUS DAMPING", "CJ", deck.dampers))
-        note = deck.damping_note()
-    elif np.any(deck.loss):
+    if np.any(deck.loss):
         blocks.append(("STRUCTURAL DAMPING", "SJ", deck.loss))
     lines = _assembled(deck.entries, [(kind, name, deck.pairs.matrix(values)) for kind, name, values in blocks])
-    return "\n".join([*deck.header("**", note), *lines]) + "\n"
+    return "\n".join([*deck.header("**", STRUCTURAL), *lines]) + "\n"
 
 
 def _assembled(entries: Index, matrices: list[tuple[str, str, Any]]) -> list[str]:
@@ -386,10 +378,16 @@ def contact(deck: JointDeck) -> str:
 
 
 def condensed(deck: CondensedDeck) -> dict[str, str]:
-    """Two nodes and the joint between them as a matrix, to include in an input deck before its first step, by name."""
+    """Points and matrices between them, to include in an input deck before its first step, by name.
+
+    A mode is direction 1 of a node of its own.
+    """
     matrices = [("STIFFNESS", "KJ", deck.in_units(deck.stiffness))]
+    if deck.mass is not None:
+        matrices.append(("MASS", "MJ", deck.in_units(deck.mass)))
     if np.any(deck.loss):
         matrices.append(("STRUCTURAL DAMPING", "SJ", deck.in_units(deck.loss)))
     lines = [*comments("**", *deck.facts, *([STRUCTURAL] if np.any(deck.loss) else [])), "*NODE"]
     lines += [f"{node},{reals(at)}" for node, at in zip(deck.nodes, deck.places, strict=True)]
-    return {"condensed_matrix.inp": "\n".join([*lines, *_assembled(deck.entries, matrices)]) + "\n"}
+    lines += [f"{number},{reals(deck.places[0])}" for number in deck.modes]
+    return {f"{deck.name}_matrix.inp": "\n".join([*lines, *_assembled(np.maximum(deck.entries, 1), matrices)]) + "\n"}

@@ -26,9 +26,9 @@ CELLS = {
 def decks(deck: JointDeck) -> dict[str, str]:
     """Mesh (.mail) and commands (.comm), by name."""
     axes, frame = grouped(deck.axes)
-    k, lost, c = deck.own()
+    k, lost = deck.own()
     part = np.array([[1.0, 0, 0], [0, 1, 1]])  # along the normal, across it
-    rows = np.concatenate([np.column_stack([frame, k * p, lost * p, c * p]) for p in part])
+    rows = np.concatenate([np.column_stack([frame, k * p, lost * p]) for p in part])
     scale = np.maximum(np.abs(rows).max(axis=0), 1e-300)
     first, group = grouped(rows / scale)
     return {
@@ -76,12 +76,12 @@ def mesh(deck: JointDeck, sets: int, group: Index, frames: int, frame: Index) ->
 def commands(deck: JointDeck, sets: Array, axes: Index) -> str:
     """Write AFFE_MODELE and AFFE_CARA_ELEM of the joint.
 
-    sets (s, 10): frame, then k, loss and dampers along three axes.
+    sets (s, 7): frame, then k and loss along three axes.
     """
-    paper = bool(sets[:, 7:].any())
-    note = deck.damping_note() if paper else "loss factors in AMOR_HYST: CALC_MODES takes them through RIGI_MECA_HYST"
     lines = deck.header(
-        "#", note, "mesh: LIRE_MAILLAGE(FORMAT='ASTER') of model.mail; JK<n> are springs, JX<n> their axes"
+        "#",
+        "loss factors in AMOR_HYST: CALC_MODES takes them through RIGI_MECA_HYST",
+        "mesh: LIRE_MAILLAGE(FORMAT='ASTER') of model.mail; JK<n> are springs, JX<n> their axes",
     )
     lines += [
         "MODELE = AFFE_MODELE(MAILLAGE=MAIL, AFFE=(",
@@ -90,12 +90,10 @@ def commands(deck: JointDeck, sets: Array, axes: Index) -> str:
         "CARA = AFFE_CARA_ELEM(MODELE=MODELE, DISCRET=(",
     ]
     for s, row in enumerate(sets, 1):
-        k, lost, c = (row[i : i + 3] for i in (1, 4, 7))
-        factor = 0.0 if paper else float(lost.sum() / k.sum()) if k.sum() else 0.0
+        k, lost = row[1:4], row[4:]
+        factor = float(lost.sum() / k.sum()) if k.sum() else 0.0
         hysteretic = f", AMOR_HYST={real(factor, 20)}" if factor else ""
         lines.append(f"    _F(GROUP_MA='JK{s}', REPERE='LOCAL', CARA='K_T_D_L', VALE=({reals(k, ', ')}){hysteretic}),")
-        if c.any():
-            lines.append(f"    _F(GROUP_MA='JK{s}', REPERE='LOCAL', CARA='A_T_D_L', VALE=({reals(c, ', ')})),")
     lines.append("    _F(GROUP_MA='JOINT', REPERE='GLOBAL', CARA='M_T_D_L', VALE=0.0)),")
     lines.append("  ORIENTATION=(")
     for s, leader in enumerate(axes, 1):

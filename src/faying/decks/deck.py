@@ -1,6 +1,6 @@
 """What every exporter gets: the pairs of one joint, the numbers and units of the model, and what its header says."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import TextWrapper
@@ -8,7 +8,7 @@ from textwrap import TextWrapper
 import numpy as np
 
 from faying import units
-from faying.decks.programs import CONDENSED, module_of
+from faying.decks.programs import CONDENSED, REDUCED, module_of
 from faying.decks.programs import SOLVERS as SOLVERS
 from faying.errors import InputError
 from faying.fe.mesh import Mesh
@@ -96,7 +96,7 @@ class JointDeck:
     """One joint, ready to be written.
 
     pairs: its springs; mesh: of the model, with its node numbers; faces: their names; facts: lines for the header;
-    viscous [N s/m] (p, 3, 3): dampers, None where no frequency is given; paper: they are the JK paper's; first_element:
+    viscous [N s/m] (p, 3, 3): dampers, None where no frequency is given; first_element:
     the number from which elements are numbered; contact: None where the law gives no curve.
     """
 
@@ -106,7 +106,6 @@ class JointDeck:
     system: UnitSystem
     facts: tuple[str, ...]
     viscous: Array | None = None
-    paper: bool = False
     frequency: float | None = None
     first_element: int = 1
     contact: ContactProperty | None = None
@@ -157,14 +156,9 @@ class JointDeck:
         """Comment lines: the facts of the joint and the notes of this form."""
         return comments(mark, *self.facts, *more)
 
-    def own(self) -> tuple[Array, Array, Array]:
-        """Stiffness, loss and the JK paper's dampers (p, 3) along the pairs' own axes; InputError as `NodePairs.own`.
-
-        Dampers of 0 where loss factors stand in their place.
-        """
-        k, lost = self.pairs.own(self.stiffness), self.pairs.own(self.loss)
-        dampers = self.dampers if self.paper else None
-        return k, lost, np.zeros_like(k) if dampers is None else self.pairs.own(dampers)
+    def own(self) -> tuple[Array, Array]:
+        """Stiffness and loss (p, 3) along the pairs' own axes; InputError as `NodePairs.own`."""
+        return self.pairs.own(self.stiffness), self.pairs.own(self.loss)
 
     def damping_note(self) -> str:
         """A sentence on the dampers of a form that takes no loss factor."""
@@ -172,11 +166,6 @@ class JointDeck:
             return (
                 "no dampers: this form takes no loss factor, and no frequency was given at which viscous dampers "
                 'c = eta k/omega stand for it (--frequency "500 Hz")'
-            )
-        if self.paper:
-            return (
-                "dampers after the JK paper, c = eta sqrt(M k) pair by pair, M the whole mass: their sum grows with "
-                "the square root of the number of pairs, so the damping depends on the mesh"
             )
         return f"dampers c = eta k/omega, right at {self.frequency:g} Hz: loss grows with frequency beyond it"
 
@@ -189,37 +178,47 @@ def comments(mark: str, *texts: str) -> list[str]:
 
 @dataclass(frozen=True, kw_only=True)
 class CondensedDeck:
-    """A joint as one matrix between two points, ready to be written.
+    """A joint or a structure as matrices between points, ready to be written.
 
-    points (2, 3) [m]; nodes: their numbers; element: number of the element or property; stiffness and loss, its
-    imaginary part (12, 12) [N/m, N, N m]: three translations and three rotations of the first point, then of the
-    second, in the axes of the model; facts: lines for the header.
+    points (p, 3) [m]; nodes (p,): their numbers; element: number of the element or property; entries (n, 2): node and
+    direction of each row, three translations and three rotations in the axes of the model, or a number of its own and 0
+    for a mode; stiffness, loss, its imaginary part, and mass, None for a joint (n, n) [N/m, N, N m; kg, kg m, kg m2],
+    of modes normalised to 1 kg; facts: lines for the header; name: of the files.
     """
 
     points: Array
-    nodes: tuple[int, int]
+    nodes: Sequence[int]
     element: int
+    entries: Index
     stiffness: Array
     loss: Array
+    mass: Array | None = None
     system: UnitSystem
     facts: tuple[str, ...]
+    name: str = "condensed"
 
     def in_units(self, matrix: Array) -> Array:
-        """A matrix (12, 12) in the deck's units, without the rounding of zeros."""
-        size = np.sqrt(np.maximum(np.diag(self.stiffness), 0.0))
+        """A matrix (n, n) in the deck's units, without the rounding of zeros; modes keep their mass."""
+        size = np.sqrt(np.abs(np.diag(matrix)))
         clean = np.where(np.abs(matrix) > NOTHING * np.outer(size, size), matrix, 0.0)
-        lengths = np.tile(np.repeat([self.system.metre, 1.0], 3), 2)
-        return np.asarray(clean * self.system.newton * self.system.metre / np.outer(lengths, lengths))
+        energy, direction = self.system.newton * self.system.metre, self.entries[:, 1]
+        lengths = np.select([direction == 0, direction < 4], [np.sqrt(energy), self.system.metre], 1.0)
+        return np.asarray(clean * energy / np.outer(lengths, lengths))
 
     @property
     def places(self) -> Array:
-        """Coordinates of both points (2, 3) in the deck's unit."""
+        """Coordinates of the points (p, 3) in the deck's unit."""
         return np.asarray(self.points * self.system.metre)
 
     @property
-    def entries(self) -> Index:
-        """Node and direction, from 1, of each row (12, 2)."""
-        return np.column_stack([np.repeat(self.nodes, 6), np.tile(np.arange(1, 7), 2)])
+    def modes(self) -> list[int]:
+        """Numbers of the modes."""
+        return [int(node) for node, direction in self.entries if direction == 0]
+
+
+def six_each(nodes: Sequence[int]) -> Index:
+    """Node and direction, from 1 to 6, of each row of a matrix between nodes (6 p, 2)."""
+    return np.column_stack([np.repeat(nodes, 6), np.tile(np.arange(1, 7), len(nodes))])
 
 
 def _clean(blocks: Array) -> Array:
@@ -288,12 +287,11 @@ def write(deck: JointDeck, solver: str, folder: Path) -> list[Path]:
 
 
 def write_condensed(deck: CondensedDeck, solver: str, folder: Path) -> list[Path]:
-    """Write a condensed joint for `solver`. Raises InputError for one that takes no such matrix."""
-    if solver not in CONDENSED:
-        raise InputError(
-            f"{solver!r} has no exporter for a matrix between two points with rotations; take one of "
-            f"{', '.join(CONDENSED)}. faying attach writes the springs of the joint for {', '.join(SOLVERS)}"
-        )
+    """Write a condensed joint or a superelement for `solver`. Raises InputError for one that takes no such matrix."""
+    what, known = ("matrix between two points with rotations", CONDENSED) if deck.mass is None else (deck.name, REDUCED)
+    if solver not in known:
+        more = f". faying attach writes the springs of the joint for {', '.join(SOLVERS)}" if deck.mass is None else ""
+        raise InputError(f"{solver!r} has no exporter for a {what}; take one of {', '.join(known)}{more}")
     return _written(module_of(solver).condensed(deck), folder)
 
 

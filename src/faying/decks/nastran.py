@@ -220,22 +220,19 @@ def card(name: str, *values: Field) -> list[str]:
 
 def cbush(deck: JointDeck) -> str:
     """Write CBUSH elements in coordinate systems of the face: direction 1 is the normal. Raises as `NodePairs.own`."""
-    k, lost, dampers = deck.own()
+    k, lost = deck.own()
     ratio = np.divide(lost, k, out=np.zeros_like(k), where=k != 0)
-    by_loss = "GE of directions 1, 2, 3; a solver that reads one GE takes that of the normal"
-    lines = deck.header("$", deck.damping_note() if dampers.any() else by_loss)
+    lines = deck.header("$", "GE of directions 1, 2, 3; a solver that reads one GE takes that of the normal")
     axes, frame = grouped(deck.axes)
     number = deck.first_element
     for g, leader in enumerate(axes):
         n, _, t2 = (tuple(float(x) for x in row) for row in deck.axes[leader])
         lines += card("CORD2R", number + g, 0, 0.0, 0.0, 0.0, *t2, *n)
     size = np.abs(k).max()
-    first, alike = grouped(np.column_stack([k / size, ratio, dampers / max(dampers.max(), 1e-300)]))
+    first, alike = grouped(np.column_stack([k / size, ratio]))
     for g, leader in enumerate(first):
         words: list[Field] = [number + g, "K", *map(float, k[leader]), "", "", ""]
-        if dampers[leader].any():
-            words += ["", "B", *map(float, dampers[leader]), "", "", ""]
-        elif ratio[leader].any():
+        if ratio[leader].any():
             words += ["", "GE", *map(float, ratio[leader]), "", "", ""]
         lines += card("PBUSH", *words)
     for i, (one, two) in enumerate(zip(*deck.ends, strict=True)):
@@ -253,33 +250,24 @@ def celas2(deck: JointDeck) -> str:
     Grids must have their displacements in the basic axes (CD = 0). Raises InputError where a spring that couples has a
     loss factor of another sign than its stiffness.
     """
-    by_loss = "loss factors in GE; springs in the basic axes: leave CD of the grids blank"
-    lines = deck.header("$", deck.damping_note() if deck.paper else by_loss)
+    lines = deck.header("$", "loss factors in GE; springs in the basic axes: leave CD of the grids blank")
     number, grids = count(deck.first_element), deck.ends
     lost = springs_of(deck.loss, deck.stiffness)
     for (a, c, b, d, values), (*_, loss) in zip(springs_of(deck.stiffness), lost, strict=True):
         for i in np.flatnonzero((values != 0) | (loss != 0)):
             if values[i] == 0:
                 raise InputError("a spring with loss but no stiffness has no loss factor; take matrix or dmig")
-            factor = 0.0 if deck.paper else float(loss[i] / values[i])
+            factor = float(loss[i] / values[i])
             ends = int(grids[a][i]), c + 1, int(grids[b][i]), d + 1
             lines += card("CELAS2", next(number), float(values[i]), *ends, *([factor] if factor else []))
-    if deck.paper and deck.dampers is not None:
-        for a, c, b, d, values in springs_of(deck.dampers):
-            for i in np.flatnonzero(values):
-                ends = int(grids[a][i]), c + 1, int(grids[b][i]), d + 1
-                lines += card("CDAMP2", next(number), float(values[i]), *ends)
     return "\n".join(lines) + "\n"
 
 
 def dmig(deck: JointDeck) -> str:
-    """Write the joint as DMIG matrices KJOINT and, for the loss, K4JOINT (structural) or BJOINT (viscous)."""
+    """Write the joint as DMIG matrices KJOINT and, for the loss, K4JOINT."""
     chosen = ["case control: K2GG = KJOINT"]
     bulk = _dmig("KJOINT", deck.entries, deck.pairs.matrix(deck.stiffness))
-    if deck.paper and deck.dampers is not None:
-        chosen += ["case control: B2GG = BJOINT", deck.damping_note()]
-        bulk += _dmig("BJOINT", deck.entries, deck.pairs.matrix(deck.dampers))
-    elif np.any(deck.loss):
+    if np.any(deck.loss):
         chosen.append("case control: K42GG = K4JOINT, the loss as a structural damping matrix")
         bulk += _dmig("K4JOINT", deck.entries, deck.pairs.matrix(deck.loss))
     return "\n".join([*deck.header("$", *chosen), *bulk]) + "\n"
@@ -306,17 +294,23 @@ COUPLED = 1e-2  # of the mean of two diagonals: a coupling above it a CBUSH cann
 
 
 def condensed(deck: CondensedDeck) -> dict[str, str]:
-    """Bulk data of a condensed joint, by name: a DMIG, and a CBUSH where both points coincide and little couples."""
+    """Bulk data of matrices, by name: DMIG; of a joint also a CBUSH where both points coincide and little couples."""
     grids: list[str] = []
     for node, at in zip(deck.nodes, deck.places, strict=True):
         grids += card("GRID", node, 0, *map(float, at), 0)
-    chosen = ["case control: K2GG = KJOINT"]
-    lines = _dmig("KJOINT", deck.entries, deck.in_units(deck.stiffness))
-    if np.any(deck.loss):
-        chosen.append("case control: K42GG = K4JOINT, the loss as a structural damping matrix")
-        lines += _dmig("K4JOINT", deck.entries, deck.in_units(deck.loss))
-    out = {"condensed_dmig.bdf": "\n".join([*comments("$", *deck.facts, *chosen), *grids, *lines]) + "\n"}
-    bush = _bush(deck)
+    scalar = [line for number in deck.modes for line in card("SPOINT", number)]
+    matrices = {"K2GG": ("KJOINT", deck.stiffness), "K42GG": ("K4JOINT", deck.loss)}
+    if deck.mass is not None:
+        matrices = {"K2GG": ("KAAX", deck.stiffness), "M2GG": ("MAAX", deck.mass), "K42GG": ("K4AAX", deck.loss)}
+    chosen, lines = [], []
+    for command, (name, matrix) in matrices.items():
+        if np.any(matrix):
+            more = ", the loss as a structural damping matrix" if command == "K42GG" else ""
+            chosen.append(f"case control: {command} = {name}{more}")
+            lines += _dmig(name, deck.entries, deck.in_units(matrix))
+    head = [*comments("$", *deck.facts, *chosen), *grids, *scalar]
+    out = {f"{deck.name}_dmig.bdf": "\n".join([*head, *lines]) + "\n"}
+    bush = None if deck.mass is not None else _bush(deck)
     if bush:
         note, cards = bush
         out["condensed_cbush.bdf"] = "\n".join([*comments("$", *deck.facts, note), *grids, *cards]) + "\n"

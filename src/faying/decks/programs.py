@@ -7,6 +7,7 @@ from typing import Any
 from faying.file_kinds import Use, taken
 
 CONDENSED = ("mapdl", "abaqus", "nastran")  # write a condensed joint: `condensed(deck) -> {file: text}`
+REDUCED = ("abaqus", "nastran", "market")  # write a superelement, by the same function
 SOLVERS = (*CONDENSED, "calculix", "aster")  # write a joint: `decks(deck) -> {file: text}`
 
 

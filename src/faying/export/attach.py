@@ -164,7 +164,6 @@ def attach(
     tolerance: float | str | None = None,
     coupling: Literal["auto", "nodes", "faces"] = "auto",
     frequency: float | str | None = None,
-    damping: Literal["loss", "paper"] = "loss",
     force_unit: str = "N",
     any_size: bool = False,
 ) -> Attachment:
@@ -181,7 +180,6 @@ def attach(
         tolerance: how far apart the faces may lie [m], or text with a unit.
         coupling: "nodes" (pair by pair), "faces" (springs per area, exact on any meshes) or what the meshes allow.
         frequency: of viscous dampers that lose as much as the loss factor does [Hz], or text with a unit.
-        damping: "paper" for the JK paper's dampers.
         force_unit: unit of force of the model.
         any_size: take a joint of any area.
 
@@ -223,8 +221,6 @@ def attach(
             "some of them are negative"
         )
     viscous = None if at_frequency is None else np.asarray(pairs.loss / (2 * np.pi * at_frequency))
-    if damping == "paper":
-        viscous = _paper_dampers(pairs, mesh, materials)
     area = pairs.area if pairs.lumped else interface.weights
     flags = _flags(law, used, area)
     system = UnitSystem(unit, force_unit)
@@ -239,7 +235,6 @@ def attach(
         system=system,
         facts=(head, *_facts(law, pairs, interface, system, f"pressure: {origin}; {of_pressure}"), *(flags or [VALID])),
         viscous=viscous,
-        paper=damping == "paper",
         frequency=at_frequency,
         first_element=(last_element(file) // 100_000 + 1) * 100_000 + 1,  # a round number above all of the file
         contact=_contact(law, spec, float(used.max()), mean),
@@ -377,25 +372,6 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
     if not np.any(pressure > 0):
         out.append("validity: the joint carries no pressure, so it has no stiffness")
     return out
-
-
-def _paper_dampers(pairs: NodePairs, mesh: Mesh, materials: Mapping[str, Material]) -> Array:
-    """Dampers c = eta sqrt(M k) [N s/m] (p, 3, 3) of the JK paper, M the whole mass."""
-    if not pairs.lumped:
-        raise InputError(
-            "the JK paper's dampers belong to pairs of nodes; the faces' meshes must match (coupling nodes)"
-        )
-    from faying.fe.elasticity import element_mass
-
-    mass = sum(
-        float(element_mass(mesh.points, cells, materials[part].density or 0.0).sum())
-        for part, blocks in mesh.parts.items()
-        for cells in blocks
-    )
-    k, lost = pairs.own(pairs.stiffness), pairs.own(pairs.loss)
-    eta = np.divide(lost, k, out=np.zeros_like(k), where=k > 0)
-    c = eta * np.sqrt(mass * k)
-    return np.asarray(np.einsum("pik,pi,pil->pkl", pairs.frames, c, pairs.frames))
 
 
 def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> ContactProperty | None:

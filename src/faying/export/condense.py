@@ -1,7 +1,7 @@
 """One joint of a study as a 6 x 6 stiffness and loss between two points, with its error over frequency."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -10,8 +10,8 @@ from typing import Any, Literal
 import numpy as np
 
 from faying.case.case import Case, Progress
-from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
-from faying.errors import InputError, NotConverged
+from faying.decks.deck import CondensedDeck, UnitSystem, six_each, write_condensed
+from faying.errors import InputError
 from faying.fe.elasticity import unit_motions
 from faying.fe.interface import Interface
 from faying.joint.assembled_parts import unknowns_of
@@ -24,6 +24,7 @@ from faying.measured.mac import mac
 from faying.misuse import checked_call
 from faying.numerics.constraint import constrain
 from faying.numerics.follow import partners
+from faying.numerics.held import Held
 from faying.numerics.modes import Modes, lowest_modes
 from faying.numerics.solve import factorise
 from faying.progress import Report
@@ -35,7 +36,6 @@ from faying.text import in_columns
 from faying.typing import Array
 from faying.units import load_text
 
-SEED = 20240611
 OPEN = 1e-12  # of its greatest: a stiffness below it leaves the joint free to move
 
 Tie = Literal["mean", "rigid"]
@@ -159,59 +159,36 @@ def condensed_modes(
     K, M = structure.dynamic_matrices
     others = [s.stiffness() for k, s in enumerate(springs) if k != number]
     K = sum((constrain(other, structure.fixed, 0.0) for other in others), K)
-    if tie == "rigid":
-        return _rigid(structure, K, M, joint, number, count, solver)
+    modes, motion = (_rigid if tie == "rigid" else _mean)(structure, K, M, joint, number, count, solver)
+    # to first order, of mass-normalised modes
+    lost, squared = np.einsum("im,ij,jm->m", motion, joint.loss, motion), (2 * np.pi * modes.frequencies) ** 2
+    factors = np.divide(lost, squared, out=np.zeros_like(lost), where=squared > 0)
+    return CondensedModes(frequencies=modes.frequencies, loss_factors=factors, shapes=modes.shapes)
+
+
+def _mean(
+    structure: Structure, K: Any, M: Any, joint: CondensedJoint, number: int, count: int, solver: str | None
+) -> tuple[Modes, Array]:
+    """Lowest modes with the points on the mean motions of the faces, and the relative motions of these (6, m).
+
+    Those are six unknowns more, without mass, whose sums with the motions of the faces are held.
+    """
+    from scipy.sparse import block_diag
+
     spread = joint.mean.copy()
     spread[structure.fixed] = 0.0
-    frequencies, shapes = _updated(K, M, spread, joint.stiffness, count, structure.shift_frequency, solver)
-    motion = np.asarray(np.linalg.solve(joint.stiffness, spread.T @ shapes))
-    return CondensedModes(frequencies=frequencies, loss_factors=_factors(motion, joint, frequencies), shapes=shapes)
-
-
-def _factors(motion: Array, joint: CondensedJoint, frequencies: Array) -> Array:
-    """Loss factors [-] to first order, from the motions (6, m) of the condensed joint in mass-normalised modes."""
-    lost = np.einsum("im,ij,jm->m", motion, joint.loss, motion)
-    squared = (2 * np.pi * frequencies) ** 2
-    return np.asarray(np.divide(lost, squared, out=np.zeros_like(lost), where=squared > 0))
-
-
-def _updated(
-    K: Any, M: Any, spread: Array, stiffness: Array, count: int, shift_frequency: float, solver: str | None
-) -> tuple[Array, Array]:
-    """Lowest modes of K + B k^-1 B' with six columns B, by one factorisation of K + shift M and Woodbury's formula."""
-    from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
-
-    shift, n = (2 * np.pi * shift_frequency) ** 2, K.shape[0]
-    factor = factorise((K + shift * M).tocsr(), solver)
-    answer = factor.solve(np.asfortranarray(spread))
-    inner = np.linalg.inv(stiffness + spread.T @ answer)
-
-    def solved(right: Array) -> Array:
-        plain = factor.solve(right)
-        return np.asarray(plain - answer @ (inner @ (spread.T @ plain)))
-
-    def product(x: Array) -> Array:
-        return np.asarray(K @ x + spread @ np.linalg.solve(stiffness, spread.T @ x))
-
-    try:
-        values, shapes = eigsh(
-            LinearOperator((n, n), matvec=product, dtype=float),
-            count,
-            M,
-            sigma=-shift,
-            OPinv=LinearOperator((n, n), matvec=solved, dtype=float),
-            v0=np.random.default_rng(SEED).standard_normal(n),
-        )
-    except ArpackError as fault:
-        raise NotConverged(f"the modes with the joint condensed were not found ({fault}); ask for fewer") from None
-    order = np.argsort(values)
-    return np.sqrt(np.abs(values[order])) / (2 * np.pi), np.asarray(shapes[:, order])
+    K, M = block_diag([K, joint.stiffness]).tocsr(), block_diag([M, np.zeros((6, 6))]).tocsr()
+    shift = (2 * np.pi * structure.shift_frequency) ** 2
+    rows = np.concatenate([spread.T, -joint.stiffness], axis=1)
+    held = Held(factor=factorise((K + shift * M).tocsr(), solver), rows=rows)
+    modes = lowest_modes(K, M, count, shift_frequency=structure.shift_frequency, factor=held)
+    return replace(modes, shapes=modes.shapes[:-6]), modes.shapes[-6:]
 
 
 def _rigid(
     structure: Structure, K: Any, M: Any, joint: CondensedJoint, number: int, count: int, solver: str | None
-) -> CondensedModes:
-    """Lowest modes with both faces of a joint rigid."""
+) -> tuple[Modes, Array]:
+    """Lowest modes with both faces of a joint rigid, and the relative motions of these (6, m)."""
     from scipy.sparse import block_diag, csr_array, eye_array, hstack
 
     mesh = structure.mesh
@@ -229,19 +206,14 @@ def _rigid(
     place = np.arange(len(free), len(free) + 12)
     inner = turn.T @ joint.stiffness @ turn
     entry = csr_array((inner.ravel(), (np.repeat(place, 12), np.tile(place, 12))), shape=(tie.shape[1],) * 2)
-    modes: Modes = lowest_modes(
+    modes = lowest_modes(
         (tie.T @ K @ tie + entry).tocsr(),
         (tie.T @ M @ tie).tocsr(),
         count,
         shift_frequency=structure.shift_frequency,
         solver=solver,
     )
-    motion = turn @ modes.shapes[place]
-    return CondensedModes(
-        frequencies=modes.frequencies,
-        loss_factors=_factors(motion, joint, modes.frequencies),
-        shapes=np.asarray(tie @ modes.shapes),
-    )
+    return replace(modes, shapes=np.asarray(tie @ modes.shapes)), turn @ modes.shapes[place]
 
 
 LIKE = 0.5  # MAC by mass from which two modes are one
@@ -307,6 +279,7 @@ class Condensed(Summary):
             points=self.points,
             nodes=nodes,
             element=element,
+            entries=six_each(nodes),
             stiffness=stiffness,
             loss=loss,
             system=system,
@@ -414,14 +387,8 @@ def condense(
     study = Study.read_bolted(study)
     number, index = _joint(study, joint), preload_index(study.loads, preload, names=study.load_names)
     progress = Progress(STAGES + index, report)
-    case = Case.of(study, progress)
+    case, springs = at_preload(study, index, progress)
     structure = case.structure
-    problem = structure.assembly(solver=study.modes.solver)
-    for k in range(index + 1):
-        progress.begin(f"preload {study.preloads[k].name}")
-        state = checked_preload(structure, problem, case.study.preloads[k])
-    structure = structure.under(state)
-    springs = structure.springs(state.pressures)
     progress.begin("modes")
     modes, *_ = modes_of(case.modal, springs)
     check_motions(structure, modes)
@@ -453,6 +420,17 @@ def condense(
         mean_loss=mean_loss,
         lossless=not structure.joints[number].law.predicts_loss,
     )
+
+
+def at_preload(study: Study, index: int, progress: Progress) -> tuple[Case, tuple[Springs[Interface], ...]]:
+    """A study under one of its preloads, after those before it, and the springs of its joints there."""
+    case = Case.of(study, progress)
+    problem = case.structure.assembly(solver=study.modes.solver)
+    for preload in case.study.preloads[: index + 1]:
+        progress.begin(f"preload {preload.name}")
+        state = checked_preload(case.structure, problem, preload)
+    case = case.under(state)
+    return case, case.structure.springs(state.pressures)
 
 
 def _joint(study: Study, name: str | None) -> int:

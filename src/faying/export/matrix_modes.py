@@ -30,7 +30,7 @@ from faying.typing import Array, Index
 class Assembled:
     """Stiffness [N/m] and mass [kg] (n, n), sparse CSR; dofs (n, 2): node and direction; a frequency to shift by [Hz].
 
-    points: coordinates (n / 3, 3) [m] of the nodes, where known.
+    points: coordinates (nodes, 3) [m], where known; loss: imaginary part of the stiffness [N/m] (n, n), where known.
     """
 
     stiffness: Any
@@ -39,6 +39,7 @@ class Assembled:
     shift_frequency: float
     source: str
     points: Array | None = None
+    loss: Any | None = None
 
     @classmethod
     def of_study(cls, study: Study) -> "Assembled":
@@ -66,12 +67,14 @@ class Assembled:
         return cls(stiffness=K, mass=M, dofs=dofs, shift_frequency=typical_frequency(K, M), source=stiffness.name)
 
     def write(self, folder: Path) -> list[Path]:
-        """Write stiffness.npz, mass.npz (SciPy), dofs.txt and where known points.txt, all or none of them."""
+        """Write stiffness.npz, mass.npz (SciPy), dofs.txt, and where known loss.npz and points.txt, all or none."""
         from scipy.sparse import csr_matrix
 
         out = []
         with together(folder, "give another (--export)") as hidden:
-            for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+            for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass), ("loss", self.loss)):
+                if matrix is None:
+                    continue
                 csr = csr_matrix(matrix)
                 arrays = {"format": b"csr", "shape": csr.shape}  # as scipy.sparse.save_npz has them
                 arrays |= {part: getattr(csr, part) for part in ("indices", "indptr", "data")}
