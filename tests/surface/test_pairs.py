@@ -6,7 +6,6 @@ import pytest
 from faying import InputError, fit_fractal
 from faying.surface.combine import combine
 from faying.surface.form import prepared
-from faying.surface.lay import find_lay
 from faying.surface.synthesize import spectral
 
 
@@ -55,16 +54,3 @@ def test_what_cannot_be_combined():
         combine(a, a.profile("x", 0))
     with pytest.raises(InputError, match="share no band"):
         combine(a, spectral((128, 128), spacing=1e-4, D=2.4, Rq=1e-6))
-
-
-@pytest.mark.parametrize("angle", [0.0, 0.6, 1.5, 2.6])
-def test_the_lay_is_found(angle):
-    lay = find_lay(spectral((256, 256), spacing=1e-6, D=2.4, Rq=1e-6, lay=(angle, 2.0), seed=3))
-    assert lay.present
-    assert abs((lay.angle - angle + np.pi / 2) % np.pi - np.pi / 2) < 0.08
-
-
-def test_an_isotropic_surface_has_none():
-    for seed in range(5):
-        scan = spectral((192, 192), spacing=1e-6, D=2.4, Rq=1e-6, seed=seed)
-        assert not find_lay(scan).present

@@ -9,7 +9,6 @@ import pytest
 from faying import FayingError, InputError, ReadError, Scan, fit_fractal, read_scan
 from faying.surface.form import levelled, prepared
 from faying.surface.fractal import fit_all
-from faying.surface.lay import find_lay
 from faying.surface.roughness import roughness
 
 NANOVEA = {"xy_unit": "mm", "z_unit": "um"}
@@ -50,7 +49,6 @@ def test_ski_scan(scans):
     assert scan.missing / scan.heights.size == pytest.approx(0.004, abs=5e-4)
     assert roughness(scan).Sq == pytest.approx(18.1e-6, rel=5e-3)
     assert "Alicona" in scan.instrument.name
-    assert find_lay(scan).present
 
 
 @needs_library
