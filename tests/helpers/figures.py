@@ -260,7 +260,9 @@ def prediction():
         loss_factors=np.full(f.shape, np.nan),
         open_share=np.zeros((128, 2)),
         above_range_share=np.zeros((128, 2)),
+        discrepancy=np.zeros(f.shape[1:]),
         paired=f[..., :2],
+        discrepancy_of_test_mode=np.zeros((2, 2)),
         test=np.array([[101.0, 249.0], [108.0, 300.0]]),
         test_source="test",
         backbones=Backbones(

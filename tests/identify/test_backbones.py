@@ -222,7 +222,7 @@ def test_it_is_shown(found, tmp_path):
     assert "backbones, 5 % .. median .. 95 %: mode 3 at 3 kN" in tables.text(found)
     page = predicted(found)
     assert "Backbones, 5% .. median .. 95%" in page
-    assert page.count("<figure>") == 4
+    assert page.count("<figure>") == 3
     summary = json.loads(json.dumps(found.to_dict()))["backbones"]
     assert summary["reached"] == [8] * len(found.backbones.acceleration)
     assert summary["frequencies"]["values"][1][0] == pytest.approx(q.backbone_frequencies[1, 0])

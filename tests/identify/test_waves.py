@@ -96,6 +96,18 @@ def test_modes_have_the_names_of_those_as_modelled(study):
     assert [one.frequencies for one in named] == [pytest.approx(row, rel=LIMIT) for row in modelled.frequencies]
 
 
+@pytest.mark.slow
+def test_a_sample_that_cannot_be_loses_no_other(study):
+    """Waves of 5 mm on a face of 30 mm are refused; the sample beside them has the answer that it has alone."""
+    ensemble = Ensemble.of(study, 8, 4)
+    reduced = Reduced(ensemble)
+    both = reduced.rows(ensemble.with_values(np.array([[5e-7, 3.0], [5e-3, 4.0]])), "both")
+    alone = reduced.rows(ensemble.with_values(np.array([[5e-7, 3.0]])), "alone")
+    assert both["frequencies"][0] == pytest.approx(alone["frequencies"][0], rel=2 * DRAWN)
+    assert np.isnan(both["frequencies"][1]).all()
+    assert "waviness" in both["reasons"][1]
+
+
 def test_true_draws_waves_of_the_size_that_the_form_gives(tmp_path):
     study = study_of(tmp_path, "waviness = true", 'waviness = { Wq = "0.5 um" }')
     assert [one.key for one in study.uncertain.inputs] == ["joint.joint.form.waviness_seed"]

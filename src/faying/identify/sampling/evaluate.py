@@ -20,7 +20,7 @@ from faying.measured.mac import mac
 from faying.measured.pairing import pair_over_loads
 from faying.numerics.follow import follow
 from faying.progress import Report, silent
-from faying.reduction.reduce import Reduction
+from faying.reduction.reduce import Gapped, Reduction
 from faying.reduction.reduced import ReducedModel, Variant
 from faying.study.keys.test import TestChoice
 from faying.sweeps.parallel import Rows, Work, each, rows_of
@@ -329,13 +329,19 @@ class Reduced:
         """
         work, bases, loads = self._evaluator(ensemble, law), self._whole().branch(), ensemble.loads
         self.trainer.builder = work.builder
-        first = [(ensemble.training + int(sample)) * loads for sample in samples]
         starts: list[Array | None] = [one.preload.displacement for one in work.median]
         starts = starts or [None] * loads
-        usual = [(load, starts[load]) for load in sorted({0, loads - 1})]
         gaps = [joint.interface.gap for joint in self.trainer.structure.joints]
-        every = [[work.builder.variant(index + load, gaps, start) for load, start in usual] for index in first]
-        trained = dict(zip(map(int, samples), bases.train_each(every, DRAWN), strict=True))
+        every: dict[int, list[Gapped]] = {}
+        trained: dict[int, Sequence[PreloadState] | FayingError] = {}
+        for sample in map(int, samples):
+            first = (ensemble.training + sample) * loads
+            try:
+                ends = sorted({0, loads - 1})
+                every[sample] = [work.builder.variant(first + load, gaps, starts[load]) for load in ends]
+            except FayingError as fault:
+                trained[sample] = fault
+        trained |= zip(every, bases.train_each(list(every.values()), DRAWN), strict=True)
         test = self.trainer.study.test
         seen = None if test is None else bases.probe(probe(self.trainer.structure, test))
         return bases, work.within(bases, seen, trained)
