@@ -64,7 +64,8 @@ def test_small_loads_are_those_of_the_matrices(tight):
 
 
 def test_superposition_does_for_small_loads_and_not_for_great_ones(tight):
-    small, great = (faying.load_cases(tight, cases(size), modes=False) for size in (TINY, 2000.0))
+    # from 1.9 kN on the joint that sticks would open under a shear of 2,800 times its pressure
+    small, great = (faying.load_cases(tight, cases(size), modes=False) for size in (TINY, 1500.0))
     assert small.superposition.max() < 1e-6
     assert small.superposes.all()
     assert not great.superposes.any()
@@ -72,7 +73,7 @@ def test_superposition_does_for_small_loads_and_not_for_great_ones(tight):
     # the forces on every case balance: what crosses the joint is what acts on the free plate
     up = great.cases.index("bend")
     bolts = great.bolt_force[up] - great.bolt_preload
-    assert bolts.sum() - (great.normal_force[up] - great.normal_preload).sum() == pytest.approx(2000.0, rel=1e-6)
+    assert bolts.sum() - (great.normal_force[up] - great.normal_preload).sum() == pytest.approx(1500.0, rel=1e-6)
 
 
 def test_the_answer_does_not_depend_on_the_basis_or_on_the_company(tight):
