@@ -13,14 +13,6 @@ from faying.cli.main import cli
 from faying.export.condense import condense
 from faying.output.terminal import text as shown
 from faying.study import Study
-from tests.helpers.studies import write_coarse
-
-
-@pytest.fixture(scope="module")
-def file(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "study.toml"
-    write_coarse(path)
-    return path
 
 
 @pytest.fixture(scope="module")

@@ -14,17 +14,9 @@ import faying
 from faying.cli.main import cli
 from faying.export.superelement import superelement
 from tests.helpers.examples import ROOT
-from tests.helpers.studies import write_coarse
 
 PLACES = ["upper.seat", {"part": "lower", "normal": "-x"}, ("40 mm", "15 mm", "15 mm")]
 UP_TO = 30e3
-
-
-@pytest.fixture(scope="module")
-def file(tmp_path_factory):
-    path = tmp_path_factory.mktemp("study") / "study.toml"
-    write_coarse(path)
-    return path
 
 
 @pytest.fixture(scope="module")

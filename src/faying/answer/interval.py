@@ -249,8 +249,7 @@ def _ends(case: Case, known: Known, middle: ChangedCase) -> dict[str, tuple[Chan
     if any(of_each(case, known, "stiffness")):
         out["law"] = replace(middle, laws=_laws(case, known, 0)), replace(middle, laws=_laws(case, known, 2))
     if any(of_each(case, known, "tangential")):
-        low, high = (replace(middle, laws=_laws(case, known, ratio=end)) for end in (0, 2))
-        out["k_t/k_n"] = low, high
+        out["k_t/k_n"] = replace(middle, laws=_laws(case, known, 1, 0)), replace(middle, laws=_laws(case, known, 1, 2))
     least, _, most = _preload_factors(case, known)
     if len(case.loads) == 1 and least < most:
         out["preload"] = replace(middle, factor=least), replace(middle, factor=most)
@@ -266,14 +265,10 @@ def _incomplete(found: Mapping[str, Sequence[Found]]) -> Iterator[Note]:
             yield Note(code=INCOMPLETE, text=f"the intervals do not contain {what}, which found no answer: {faults[0]}")
 
 
-def of_each(case: Case, known: Known, name: str) -> list[tuple[float, float, float] | None]:
+def of_each(case: Case, known: Known, name: str) -> list[tuple[float, ...] | None]:
     """5, 50 and 95 % of a number of each joint; None where it does not scatter."""
-    out = list[tuple[float, float, float] | None]()
-    for joint in case.study.joints:
-        found = of_number(known, joint.name, name)
-        low, middle, high = LEVELS if found is None else found.quantile(LEVELS)
-        out.append(None if found is None else (float(low), float(middle), float(high)))
-    return out
+    found = (of_number(known, joint.name, name) for joint in case.study.joints)
+    return [None if one is None else tuple(one.quantile(LEVELS).tolist()) for one in found]
 
 
 def law_notes(case: Case, known: Known) -> Iterator[Note]:
@@ -282,7 +277,7 @@ def law_notes(case: Case, known: Known) -> Iterator[Note]:
     And which laws were not compared with measurements.
     """
     unknown: dict[str, list[str]] = {}
-    found: dict[tuple[str, tuple[float, float, float]], list[str]] = {}
+    found: dict[tuple[str, tuple[float, ...]], list[str]] = {}
     listed = stated(case.study.uncertain)
     laws = [joint.law for joint in case.structure.joints]
     for joint, law, factors in zip(case.study.joints, laws, of_each(case, known, "stiffness"), strict=True):

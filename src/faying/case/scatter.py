@@ -16,7 +16,7 @@ from faying.form.waviness import ASSUMED
 from faying.joint.structure import Structure
 from faying.study.keys.bolt_sheet import BoltSheetChoice
 from faying.study.keys.surface import Surface
-from faying.study.keys.uncertain import DRAWS, Input, UncertainChoice
+from faying.study.keys.uncertain import ANY_DRAW, Input, UncertainChoice
 from faying.study.keys.varied import number_of
 from faying.study.study import Study
 from faying.typing import Array
@@ -214,8 +214,7 @@ def _assumed(study: Study, structure: Structure, surfaces: Sequence[Surface]) ->
         if drawn_on(study, structure.mesh, joint, fitted.interface, surface) is not None:
             if joint.form is None and ASSUMED.Wq is not None:
                 waves[f"joint.{name}.form.waviness"] = Distribution(kind="lognormal", centre=ASSUMED.Wq, spread=0.4)
-            seed = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
-            waves[f"joint.{name}.form.waviness_seed"] = seed
+            waves[f"joint.{name}.form.waviness_seed"] = ANY_DRAW
     for key, of_joints in (("stiffness", laws), ("tangential", ratios)):
         alike = len(set(of_joints.values())) == 1  # all joints move together then
         owners = {"joint": next(iter(of_joints.values()))} if alike else {f"joint.{k}": d for k, d in of_joints.items()}

@@ -23,7 +23,7 @@ from faying.joint.preload_case import preload_index
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.progress import Report, silent
-from faying.study.keys.uncertain import UncertainChoice
+from faying.study.keys.uncertain import UncertainChoice, is_draw
 from faying.study.keys.varied import MODEL
 from faying.study.part_folder import fingerprint
 from faying.study.study import Study
@@ -206,7 +206,7 @@ def _identified(
 def _check_draws(study: Study) -> None:
     """Raise InputError where waves are drawn anew in each sample: no number leads from one draw to the next."""
     keys = () if study.uncertain is None else (one.key for one in study.uncertain.inputs)
-    drawn = next((key for key in keys if key.endswith(".waviness_seed")), None)
+    drawn = next(filter(is_draw, keys), None)
     if drawn is not None:
         joint = drawn.split(".")[1]
         raise InputError(

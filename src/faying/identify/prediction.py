@@ -20,6 +20,7 @@ from faying.result.fields import Recorded, load_texts, optional, variable
 from faying.result.fields import listed as numbers
 from faying.result.provenance import Provenance
 from faying.result.run_record import preload_slope
+from faying.study.keys.uncertain import is_draw
 from faying.style import (
     COLOURS,
     COLUMN,
@@ -241,7 +242,7 @@ class Prediction(Recorded):
     @property
     def columns(self) -> list[int]:
         """Columns of the inputs that a polynomial can follow: all but the seeds of waves, which name a draw."""
-        return [k for k, name in enumerate(self.names) if not name.endswith("_seed")]
+        return [k for k, name in enumerate(self.names) if not is_draw(name)]
 
     @property
     def blamed(self) -> tuple[str, ...]:

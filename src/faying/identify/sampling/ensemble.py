@@ -69,11 +69,6 @@ class Inputs:
         """Distribution of each column; that of the law is the share of the weights, from 0 to 1."""
         return tuple(column.distribution for column in self.columns)
 
-    @property
-    def draws_waves(self) -> bool:
-        """Whether each sample has waves of its own."""
-        return any(name.endswith("waviness_seed") for name in self.names)
-
     def model(self, share: float) -> str:
         """The law at a share of the weights, from 0 to 1."""
         ends = np.cumsum([weight for _, weight in self.models])
@@ -239,10 +234,19 @@ class Ensemble:
         """What varies."""
         return self.inputs.names
 
+    @property
+    def ends(self) -> list[int]:
+        """The first and the last load, one where they are the same."""
+        return sorted({0, self.loads - 1})
+
     def corners(self, most: int) -> list[int]:
         """The samples for training, at the first and the last load in turn, the medians at both."""
         ends = 0, self.loads - 1
-        found = [0, self.middle, *(sample * self.loads + ends[sample % 2] for sample in range(1, self.training))]
+        found = [
+            0,
+            self.middle,
+            *(sample * self.loads + ends[sample % 2] for sample in range(1, self.training)),
+        ]
         return list(dict.fromkeys(found))[: max(most, self.training + 1)]
 
     def point(self, index: int) -> StudyVariant:

@@ -23,6 +23,7 @@ from faying.progress import Report, silent
 from faying.reduction.reduce import Gapped, Reduction
 from faying.reduction.reduced import ReducedModel, Variant
 from faying.study.keys.test import TestChoice
+from faying.study.keys.uncertain import is_draw
 from faying.sweeps.parallel import Rows, Work, each, rows_of
 from faying.sweeps.trainer import Trainer
 from faying.sweeps.variant_builder import VariantBuilder, contact_shares
@@ -40,6 +41,7 @@ LEARNT = 64  # samples, at all of their loads, to whose needs the bases are comp
 NEW = 16  # of those that bases do not fit, worst first: to whose needs they are compressed after they have grown
 OF_MODES = ("frequencies", "loss_factors", "named", "named_loss")  # columns of rows with a value for each mode
 OF_LOADS = ("estimate", "open_share", "above_range_share")  # and those with one for each load
+Trained = Mapping[int, Sequence[PreloadState] | FayingError]  # equilibria of samples, or why they have none
 GAINED = 0.9  # of the samples that the bases do not fit: a round that leaves more of them is the last
 
 
@@ -62,7 +64,7 @@ class Evaluator:
     seen: tuple[Array, Array] | None = None
     test: TestChoice | None = None
     median: tuple[Variant, ...] = ()
-    trained: Mapping[int, Sequence[PreloadState] | FayingError] = field(default_factory=dict)
+    trained: Trained = field(default_factory=dict)
 
     @property
     def ensemble(self) -> Ensemble:
@@ -87,7 +89,7 @@ class Evaluator:
         known = self.trained.get(sample, ())
         if isinstance(known, FayingError):
             raise known
-        starts = {0: known[0], self.ensemble.loads - 1: known[-1]} if known else {}
+        starts = dict(zip(self.ensemble.ends, known, strict=False))
         ensemble, builder = self.ensemble, self.builder
         first = (ensemble.training + sample) * ensemble.loads
         model = builder.model_at(self.model, first)
@@ -103,12 +105,7 @@ class Evaluator:
             found.append(model.evaluate(laws, forces, friction, start))
         return model, found, laws
 
-    def within(
-        self,
-        bases: Reduction,
-        seen: tuple[Array, Array] | None,
-        trained: Mapping[int, Sequence[PreloadState] | FayingError],
-    ) -> Self:
+    def within(self, bases: Reduction, seen: tuple[Array, Array] | None, trained: Trained) -> Self:
         """The same in bases that have grown from these."""
         size, static = len(bases.dynamic.small[0]), len(bases.static.small[0])
         median = []
@@ -222,7 +219,8 @@ class Reduced:
         self.store = store or SampleStore(None, what="samples")
         self.seen: tuple[Array, Array] | None = None
         self._work: dict[int, Evaluator] = {}  # in the bases as they are, with the median under each law
-        self.draws_waves, self.medians = inputs.draws_waves, range(max(len(inputs.models), 1) * ensemble.loads)
+        self.draws_waves = any(map(is_draw, inputs.names))
+        self.medians = range(max(len(inputs.models), 1) * ensemble.loads)
         kept = self.store.model()
         if kept is None:
             self._train((), _all_loads(spread, range(LEARNT)))
@@ -337,8 +335,7 @@ class Reduced:
         for sample in map(int, samples):
             first = (ensemble.training + sample) * loads
             try:
-                ends = sorted({0, loads - 1})
-                every[sample] = [work.builder.variant(first + load, gaps, starts[load]) for load in ends]
+                every[sample] = [work.builder.variant(first + load, gaps, starts[load]) for load in ensemble.ends]
             except FayingError as fault:
                 trained[sample] = fault
         trained |= zip(every, bases.train_each(list(every.values()), DRAWN), strict=True)

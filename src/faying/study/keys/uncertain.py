@@ -23,8 +23,13 @@ DISTRIBUTIONS = {"distribution", "tightening", "scatter"}  # keys of a table tha
 OWN = ("preload", *OF_TEST, "surface.fit", "surface.scans", MODEL, "only")  # that are not plain distributions
 # standard deviations of the shapes of a joint over the flatness tolerance of its faces: the second-degree part of the
 # random form of `faying.form.form`, whose mean flatness over one face is two thirds of the tolerance
-DRAWS = 1_000_000  # of waves, of which each sample has one
+ANY_DRAW = Distribution(kind="uniform", centre=5e5, spread=5e5)  # of a million draws of waves each sample has one
 SHAPE_SD = {"crown_along": 0.41, "crown_across": 0.41, "twist": 0.36}
+
+
+def is_draw(key: str) -> bool:
+    """Whether a number that varies names a draw of waves: no value of it lies between two others."""
+    return key.endswith(".waviness_seed")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -271,8 +276,7 @@ class _Reader:
                     f"{where} = true draws waves whose size the joint gives, and {joint.name!r} gives none; write for "
                     'example "0.5 um to 2 um", the rms of the waves of each face'
                 )
-            draws = Distribution(kind="uniform", centre=DRAWS / 2, spread=DRAWS / 2)
-            self._add(f"{key}_seed", draws, where)
+            self._add(f"{key}_seed", ANY_DRAW, where)
 
     def _joints(self, parts: list[str], where: str) -> list[JointChoice]:
         """The joint that a key names, or all of them."""
