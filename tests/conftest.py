@@ -5,6 +5,7 @@ import os
 import shutil
 import sys
 import tempfile
+import time
 
 import pytest
 from hypothesis import settings
@@ -26,14 +27,22 @@ if "FAYING_CACHE" not in os.environ:
 
 
 def pytest_addoption(parser):
-    parser.addoption("--half", choices=("0", "1"), help="every other test, from the first or second")
+    parser.addoption(
+        "--begin", type=int, default=0, help="begin after this share of the tests [%%]; the first are last"
+    )
+    parser.addoption("--until", type=float, help="begin no test after this time [s since 1970]")
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config, items):
-    half = config.getoption("half")
-    if half is not None:
-        config.hook.pytest_deselected(items=items[1 - int(half) :: 2])
-        items[:] = items[int(half) :: 2]
+    first = len(items) * config.getoption("begin") // 100
+    items[:] = items[first:] + items[:first]
+
+
+def pytest_runtest_setup(item):
+    until = item.config.getoption("until")
+    if until is not None and time.time() > until:
+        pytest.skip("the time of this run is over")
 
 
 @pytest.fixture

@@ -66,7 +66,7 @@ main(sys.argv[1:])
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits on file size")
-@pytest.mark.parametrize("command", ["run", "modes"])
+@pytest.mark.parametrize("command", [pytest.param("run", marks=pytest.mark.slow), "modes"])
 def test_no_half_results_where_writing_stops_short(tmp_path, command):
     """The system itself cuts every file at 32 kB, as a full disk would: the message names the file, none is left."""
     write(tmp_path / "study.toml")

@@ -39,6 +39,7 @@ def set_text(page, text):
     until(page, "document.querySelector('#saved').textContent === 'saved'")
 
 
+@pytest.mark.slow
 def test_a_scan_is_dropped_and_read(browser, server, example, tmp_path):
     with page_at(browser, server) as page:
         page.set_input_files("#file", example / "surface.x3p")
@@ -189,6 +190,7 @@ def test_an_answer_that_comes_late_does_not_replace_a_newer_one(browser, server,
         assert page.input_value("#scans") == "surface.x3p"
 
 
+@pytest.mark.slow
 def test_nothing_is_typed_before_the_study_is_there(browser, server, example, tmp_path):
     shutil.copy(example / "study.toml", tmp_path)
     with page_at(browser, server) as page:

@@ -205,6 +205,7 @@ LAWS = {
 }
 
 
+@pytest.mark.slow
 def test_a_map_zooms_and_laws_are_switched(browser, server, scanned):
     says, paths = (
         "document.querySelector('#map-says').textContent",

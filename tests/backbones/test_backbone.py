@@ -89,6 +89,7 @@ def test_a_list_of_frictions_gives_curves_from_one_basis(study, curve):
     assert np.all(both[1].damping < both[0].damping[: len(both[1].damping)])
 
 
+@pytest.mark.slow
 def test_a_list_of_laws_gives_curves_from_one_basis(study, curve):
     """A law with 1.9 times the radius is stiffer: its curve in the common basis is that which it has alone."""
     given = {"density": 2e10, "radius": 30e-6, "sigma": 0.4e-6}
@@ -133,6 +134,7 @@ def test_preload_stiffens_and_holds(study):
     assert loose.slipping[-1] > tight.slipping[-1]
 
 
+@pytest.mark.slow
 def test_loads_share_a_basis(study):
     from faying.backbones.backbone import backbones, chosen
 
@@ -151,6 +153,7 @@ def test_what_is_asked_for_at_a_point(study, curve):
     assert np.linalg.norm(corner.direction) == pytest.approx(1)
 
 
+@pytest.mark.slow
 def test_damping_at_rest_is_added(study, curve):
     more = faying.backbone(study, **LOW, rest_damping=0.001)
     np.testing.assert_allclose(more.damping, curve.damping + 0.001, rtol=1e-9)
@@ -252,6 +255,7 @@ law = ["jk", "mb"]
 """
 
 
+@pytest.mark.slow
 def test_a_run_follows_the_mode_that_the_study_names(tmp_path):
     text = (EXAMPLE / "study.toml").read_text().replace("model.inp", str(EXAMPLE / "model.inp"))
     keys = '[backbone]\namplitude = ["300 m/s^2", "900 m/s^2"]\nharmonics = 1\nfriction = [0.1, 0.3]\n'

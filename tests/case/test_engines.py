@@ -121,6 +121,7 @@ def test_newton_and_lanczos_as_they_are_written_give_the_same(study, plenty):
     agree(run(study, engine="direct"), plenty)
 
 
+@pytest.mark.slow
 def test_damping_at_levels_does_not_depend_on_what_else_is_asked_for(study, plenty):
     """Another load before it, and the ends of an interval."""
     first = replace(study.preloads[0], forces=(4e3,))

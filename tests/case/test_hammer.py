@@ -76,6 +76,7 @@ def test_full_response_answers_the_full_equations(solved):
         assert np.linalg.norm(full.receptance[:, :, k] - direct) < 2e-3 * np.linalg.norm(direct)
 
 
+@pytest.mark.slow
 def test_many_inputs_are_solved_the_other_way_round(solved):
     nodes = solved.structure.outline()[0][[3, 40, 90]]
     many, one = (nodes, np.eye(3)), (nodes[:1], np.eye(3)[2:])
@@ -163,6 +164,7 @@ def test_files_at_the_points_of_the_test_speak_its_numbers_and_frame(plan, resul
     np.testing.assert_allclose(np.diag(found.mac), 1, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_command_writes_report_figures_and_files(result, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(
         "faying.answer.run.run", lambda plan, report, **_: report("modes free and bonded", 1, 2) or result

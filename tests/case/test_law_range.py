@@ -95,6 +95,7 @@ def test_ranges_are_those_of_the_fit(script):
     assert np.log(own.quantile(np.array([0.05, 0.5, 0.95]))) == pytest.approx(np.log([0.18 / 5.8, 0.18, 0.18 * 5.8]))
 
 
+@pytest.mark.slow
 def test_ranges_hold_what_was_measured_also_of_sources_that_were_left_out(script):
     """90 % is stated. Of a source that the fit has not seen at least 80 % of the values are inside, law by law."""
     for law in script.LAWS:

@@ -35,6 +35,7 @@ def run(*arguments):
     return result
 
 
+@pytest.mark.slow
 def test_the_half_space_stands_beside_the_analytic_laws(scan_file, tmp_path):
     plot, picture = tmp_path / "law.png", tmp_path / "map.png"
     result = run(

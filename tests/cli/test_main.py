@@ -14,6 +14,7 @@ import faying
 from faying.cli import main
 from faying.cli.main import COMMANDS, cli
 from faying.cli.options import NamedPath
+from tests.helpers.studies import write
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -106,8 +107,6 @@ def test_init_keeps_what_is_not_its_own(tmp_path, capsys):
 
 
 def test_a_run_that_fails_leaves_no_folder(tmp_path, capsys):
-    from faying.setup.template import write
-
     path = tmp_path / "study.toml"
     write(path)
     path.write_text(path.read_text().replace('"upper.seat"', '"upper.set"'))
@@ -164,8 +163,9 @@ def test_an_end_of_file_in_a_command_is_no_interruption(monkeypatch):
 
 def test_a_name_beyond_ascii_runs_in_the_plain_locale(tmp_path):
     """LANG=C, without Python's own way round: what is printed and written keeps the name."""
-    shutil.copytree(EXAMPLES / "two-blocks", tmp_path / "study", ignore=shutil.ignore_patterns("results"))
     path = tmp_path / "study" / "study.toml"
+    path.parent.mkdir()
+    write(path)
     text = path.read_text(encoding="utf-8")
     path.write_text(text.replace('title = "', 'title = "Träger, ', 1), encoding="utf-8")
     plain = {**os.environ, "LC_ALL": "C", "LANG": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}

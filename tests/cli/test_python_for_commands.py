@@ -71,6 +71,7 @@ def test_check(tmp_path):
     assert len(repr(found).splitlines()) <= 12
 
 
+@pytest.mark.slow
 def test_a_study_of_a_geometry(tmp_path):
     by_hand, by_command = tmp_path / "python" / "s.toml", tmp_path / "command" / "s.toml"
     for path in (by_hand, by_command):
@@ -144,6 +145,7 @@ def test_a_condensed_joint(small, tmp_path):
     assert not (tmp_path / "c").exists()
 
 
+@pytest.mark.slow
 def test_modes_of_matrices(small, tmp_path):
     CliRunner().invoke(cli, ["modes", str(small), "--export", str(tmp_path / "m")], catch_exceptions=False)
     files = tmp_path / "m" / "stiffness.npz", tmp_path / "m" / "mass.npz"

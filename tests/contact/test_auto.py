@@ -112,6 +112,7 @@ def test_rubber_has_no_hardness_and_meets_elastically():
     assert law.at_pressure(p).k_n * 1e-6 / p == pytest.approx(2.2, rel=0.35)
 
 
+@pytest.mark.slow
 def test_a_series_is_stored_beside_the_scan_and_read_again(tmp_path, monkeypatch):
     monkeypatch.delenv("FAYING_CACHE", raising=False)
     z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 6, points=64, side=0.5e-3)
@@ -172,6 +173,7 @@ def test_stability_asks_each_part_as_a_scan_of_its_own():
     assert exact.worst[1] != 1
 
 
+@pytest.mark.slow
 def test_large_maps_are_solved_at_fewer_pressures_and_answer_alike():
     """The ladder of a map above 256 points a side, against contacts between and on its rungs."""
     z = gaussian(0.8, 0.06e-3, 8e-6, 1e-6, 8, points=288, side=1e-3)

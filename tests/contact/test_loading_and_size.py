@@ -92,6 +92,7 @@ def test_the_loading_stiffness_is_the_slope_of_the_solved_approach(name, tmp_pat
     assert compared >= 1
 
 
+@pytest.mark.slow
 def test_a_joint_closes_as_the_solved_contact_does():
     law = Mates(self_affine(128, 0.8), materials="45 steel").law("half-space")
     joint = JointLaw(model=law)
@@ -109,7 +110,9 @@ def test_unloading_is_stiffer_than_loading_at_every_pressure():
     assert loading.k_n == pytest.approx(float(law.at_pressure(20e6).k_load), rel=1e-6)
 
 
-@pytest.mark.parametrize(("hurst", "aim", "fixed_least"), [(0.8, 0.08, 0.08), (0.5, 0.26, 0.3)])
+@pytest.mark.parametrize(
+    ("hurst", "aim", "fixed_least"), [(0.8, 0.08, 0.08), pytest.param(0.5, 0.26, 0.3, marks=pytest.mark.slow)]
+)
 def test_hardness_by_size_lets_the_stiffness_settle_with_the_resolution(hurst, aim, fixed_least):
     """k_n at 10 MPa of 1024 over that of 256 points a side; with one hardness of 0.994 GPa it grows by more."""
     one_hardness = ContactPair(*(replace(STEEL, brinell=None, vickers=None),) * 2)
@@ -237,6 +240,7 @@ def test_the_softer_body_by_its_bulk_gives_the_hardness_over_size():
     assert PAIR.vickers.at(1e-6) == pytest.approx(6.2e9, rel=0.05)
 
 
+@pytest.mark.slow
 def test_range_widens_with_the_doubt_of_the_hardness():
     law = HalfSpace(self_affine(128, 0.5), PAIR, points=9)
     series = law.series

@@ -105,6 +105,7 @@ def test_text_with_units_is_read_everywhere():
     assert law.at_pressure("2 MPa").k_n.shape == ()
 
 
+@pytest.mark.slow
 def test_what_a_law_does_not_ask_for_is_not_computed(monkeypatch):
     """D and G are fitted for JK, once; not for the solved contact, the default, or laws of moments."""
     calls = []
@@ -120,6 +121,7 @@ def test_what_a_law_does_not_ask_for_is_not_computed(monkeypatch):
     assert len(calls) == 1
 
 
+@pytest.mark.slow
 def test_the_contact_is_solved_once_for_the_default_and_the_comparison(monkeypatch):
     monkeypatch.setenv("FAYING_CACHE", "off")
     solved = []

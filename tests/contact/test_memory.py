@@ -59,6 +59,7 @@ def test_the_second_loading_is_elastic_and_joins_the_first(law, pressed):
     assert second.plastic_work < 1e-6 * pressed.plastic_work + 1e-6 * pressed.elastic_energy
 
 
+@pytest.mark.slow
 def test_a_second_cycle_gives_back_what_it_takes(law, pressed):
     """Work of the plane on the way down and on the way up, by quadrature of pressure over approach: equal to 1e-6."""
     pressures = MOST * np.linspace(0.02, 1, 25)
@@ -68,6 +69,7 @@ def test_a_second_cycle_gives_back_what_it_takes(law, pressed):
     assert works[0] == pytest.approx(works[1], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_law_after_a_pressure_is_that_of_the_flattened_heights(law, pressed):
     """The family, which stands on pressures a factor of two apart, against contacts solved for this one, to 10 %.
 
@@ -110,7 +112,7 @@ def test_an_elastic_contact_remembers_nothing():
     assert law.at_pressure(p, after="30 MPa").k_n == pytest.approx(law.at_pressure(p).k_n)
 
 
-@pytest.mark.parametrize("asperity", ["KogutEtsion", "JacksonGreen"])
+@pytest.mark.parametrize("asperity", ["KogutEtsion", pytest.param("JacksonGreen", marks=pytest.mark.slow)])
 def test_summits_unload_by_the_fits_of_finite_elements(asperity):
     """Pressure and stiffness on the way back against quadrature of each summit's own way, found to 1e-4."""
     law = GreenwoodWilliamson(density=2e10, radius=20e-6, sigma=0.5e-6, pair=PAIR, asperity=asperity)

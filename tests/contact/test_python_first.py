@@ -28,6 +28,7 @@ def labels(ax):
     return [line.get_label() for line in ax.get_lines() if not line.get_label().startswith("_")]
 
 
+@pytest.mark.slow
 def test_every_law_of_a_scan_prints_a_dozen_lines_at_most():
     made, _ = MATES.laws([kind for kind in kinds() if kind not in ("Table", "GW-measured", "Power law")])
     assert len(made) > 10
@@ -73,6 +74,7 @@ def test_text_with_a_unit_counts_for_every_law():
         assert np.array_equal(law.at_pressure(["1 MPa", "2 MPa"]).k_n, law.at_pressure([1e6, 2e6]).k_n)
 
 
+@pytest.mark.slow
 def test_a_law_draws_its_branches_by_name_and_its_area():
     law = MATES.law("half-space", points=5)
     stiff, area = law.plot([1e6, 1e7, 1e8])

@@ -54,6 +54,7 @@ def test_a_bolt_that_is_no_part_is_named(study):
         checked_mesh(wrong)
 
 
+@pytest.mark.slow
 def test_the_bolt_moves_with_the_blocks(structure):
     """Tight, all three parts have but the six rigid motions."""
     from faying.numerics.modes import lowest_modes

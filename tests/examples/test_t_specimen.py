@@ -49,6 +49,7 @@ def test_levels_and_intervals_change_no_frequency(outcome, full):
     assert {"intervals.svg", "slip.svg"} <= {path.name for path in results.iterdir()}
 
 
+@pytest.mark.slow
 def test_modes_lie_between_free_and_bonded(outcome):
     data, _ = outcome
     frequencies = np.array(data["frequencies"]["values"])
@@ -60,6 +61,7 @@ def test_modes_lie_between_free_and_bonded(outcome):
     assert max(data["rigid"]["values"]) < 1e-2
 
 
+@pytest.mark.slow
 def test_all_rows_are_near(outcome, published):
     """Dimensions fit the means, waves are as milled. Bound: 5 %, a little more than the worst of the paper, 4.3 %."""
     c = outcome[0]["comparison"]
@@ -81,6 +83,7 @@ def test_all_rows_are_near(outcome, published):
     assert np.abs(error[2, [0, 1, 3, 4]]).max() < 0.01  # mode 3 hangs on the dimensions
 
 
+@pytest.mark.slow
 def test_the_change_with_preload_follows_the_test_more_than_the_paper_does(outcome):
     """Modes 1, 3, 4, 5 within a factor of 2 of the test, waves not fitted; the paper's beyond 8."""
     c, loads = outcome[0]["comparison"], np.array(outcome[0]["loads"]["values"])
@@ -126,6 +129,7 @@ def test_a_study_that_gives_its_waves_is_answered_by_one_draw_and_says_so(full):
     assert "faying sweep over joint.flange.form.waviness_seed" in text
 
 
+@pytest.mark.slow
 def test_only_the_law_that_has_a_loss_damps(outcome):
     data = outcome[0]
     assert data["alternatives"] == ["JK"]
@@ -134,12 +138,14 @@ def test_only_the_law_that_has_a_loss_damps(outcome):
     assert np.all((loss > 0) & (loss < 0.0398))  # never more than the joint's own, alpha/(1 - alpha)/(2 pi)
 
 
+@pytest.mark.slow
 def test_the_comparison_names_test_paper_and_us(outcome):
     c = outcome[0]["comparison"]
     assert c["published_name"] == "JK paper"
     assert all(np.shape(c[name]["values"]) == (3, 5) for name in ("frequencies", "published", "predicted"))
 
 
+@pytest.mark.slow
 def test_the_surface_comes_from_the_scan_and_its_roughness_is_consistent(outcome):
     surface = outcome[0]["surfaces"][0]
     assert surface["origin"] == "milled.x3p"
@@ -147,10 +153,12 @@ def test_the_surface_comes_from_the_scan_and_its_roughness_is_consistent(outcome
     assert surface["implied_Rq [m]"] == pytest.approx(surface["Rq [m]"], rel=0.5)
 
 
+@pytest.mark.slow
 def test_bolt_forces_balance(outcome):
     assert all(value < 1e-8 for value in outcome[0]["imbalance"]["values"])
 
 
+@pytest.mark.slow
 def test_files(outcome):
     _, results = outcome
     names = {path.name for path in results.iterdir()}

@@ -44,7 +44,7 @@ def test_wa_of_a_face_is_wq_over_the_factor_of_normal_heights():
     assert found.mean() == pytest.approx(1e-6 / GAUSSIAN, rel=0.03)  # few long waves: not quite normal in one draw
 
 
-@pytest.mark.parametrize("hurst", [0.5, 0.9])
+@pytest.mark.parametrize("hurst", [pytest.param(0.5, marks=pytest.mark.slow), 0.9])
 def test_the_spectrum_of_many_draws_falls_as_it_should(hurst):
     """The radial mean of periodograms over a patch of four longest waves, whose ends a Hann window takes away."""
     waves = Waves(Wq=1.0, hurst=hurst, shortest=1.0, longest=16.0, seed=0)

@@ -67,6 +67,7 @@ def test_the_law_rises_with_pressure_and_keeps_shape(law):
     assert law.greatest_pressure == pytest.approx(400e6)
 
 
+@pytest.mark.slow
 def test_choices_of_area_and_stiffness(law):
     p = 100e6
     said = law.at_pressure(p)

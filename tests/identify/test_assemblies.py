@@ -67,6 +67,7 @@ def test_two_bolts_scatter_a_frequency_by_its_slope_over_the_root_of_two(tmp_pat
     assert found.deviation[0] == pytest.approx(np.abs(slope) * 0.02 / np.sqrt(2), rel=0.1)
 
 
+@pytest.mark.slow
 def test_an_assembly_in_its_order_is_that_of_the_structure(all_drawn):
     study, found = all_drawn
     assert found.sources == ("force", "order", "position")
@@ -92,6 +93,7 @@ def test_draws_are_the_same_in_any_number_of_processes(all_drawn):
     assert not np.array_equal(faying.predict(study, assemblies=2, seed=4).forces, found.forces[:2])
 
 
+@pytest.mark.slow
 def test_interrupted_work_goes_on(all_drawn, tmp_path, monkeypatch):
     study, found = all_drawn
 

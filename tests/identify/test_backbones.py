@@ -194,6 +194,7 @@ def test_quantiles_stop_where_fewer_than_half_of_the_curves_go_on():
     assert not given([[10.0, 9.0]]).notes
 
 
+@pytest.mark.slow
 def test_without_any_curve_there_are_no_quantiles(found):
     curves = given(np.full((3, 2), np.nan), reasons={"no answer": 3})
     assert np.isnan(curves.quantiles((0.5,))).all()

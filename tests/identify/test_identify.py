@@ -114,6 +114,7 @@ def test_evidence_of_laws_gives_their_weights():
 # -- twins and calibration
 
 
+@pytest.mark.slow
 def test_twins_are_found():
     """Ten truths drawn from the priors, with offsets: intervals hold them, and the load that was left out."""
     rng = np.random.default_rng(21)
@@ -134,6 +135,7 @@ def test_twins_are_found():
     assert np.all(told[:, :2] < 0.5)
 
 
+@pytest.mark.slow
 def test_ranks_are_uniform_over_a_hundred_truths():
     """Truths and noise from their priors, on one surrogate. Chi-square over ten bins at 99.9 % for each parameter.
 
@@ -527,6 +529,7 @@ def test_evidence_with_loss_factors_is_that_of_the_closed_form():
     assert found.sd[:2] / 0.1 == pytest.approx(sd, rel=0.06)
 
 
+@pytest.mark.slow
 def test_a_law_without_loss_leaves_the_loss_factors_out_and_says_so(damped):
     test, losses = damped
 

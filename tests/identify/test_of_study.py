@@ -159,6 +159,7 @@ def blocks(tmp_path_factory):
     return out, faying.identify(study, leave_out="3 kN", seed=1, count=300, out=out)
 
 
+@pytest.mark.slow
 def test_the_example_gives_back_the_stiffness_that_it_was_made_with(blocks):
     out, result = blocks
     told = dict(zip(result.names, result.posterior_contraction, strict=True))

@@ -150,6 +150,7 @@ def test_a_prediction_is_one_page(found):
     assert f"{middle:.1f}" in page
 
 
+@pytest.mark.slow
 def test_a_run_says_which_scatter_is_in_its_intervals(tmp_path):
     path = tmp_path / "study.toml"
     write(path)

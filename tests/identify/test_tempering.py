@@ -69,7 +69,11 @@ def five(x):
     [
         (bimodal, [Distribution(kind="uniform", centre=0, spread=4)] * 2),
         (banana, [Distribution(kind="uniform", centre=0, spread=3), Distribution(kind="normal", centre=1, spread=2)]),
-        (five, [NORMAL] * 4 + [Distribution(kind="uniform", centre=0, spread=3)]),
+        pytest.param(
+            five,
+            [NORMAL] * 4 + [Distribution(kind="uniform", centre=0, spread=3)],
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=["bimodal", "banana", "five"],
 )

@@ -145,6 +145,7 @@ def bonded(welded, name, words="bonded = true\n"):
     return out
 
 
+@pytest.mark.slow
 def test_a_rib_is_welded_by_a_word_in_the_study(welded):
     study = Study.read(bonded(welded, "weld.toml"))
     assert [joint.name for joint in study.joints] == ["joint 1"]

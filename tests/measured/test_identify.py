@@ -90,6 +90,7 @@ def test_the_standard_errors_are_those_of_repeated_tests(synthetic):
     assert np.abs(bias).max() < 4
 
 
+@pytest.mark.slow
 def test_many_frfs_are_compressed_without_loss(synthetic):
     """Two hundred pairs: the dozen directions that the modes and residuals fill hold all that the poles need."""
     frf, shapes = synthetic(MODES, outputs=200, noise=0.003, last=950.0)

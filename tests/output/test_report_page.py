@@ -105,6 +105,7 @@ def test_curves_zoom_by_mouse_and_keyboard_and_both_together(page):
     assert page.evaluate(ends)[0] != before[0]
 
 
+@pytest.mark.slow
 def test_backbones_zoom_over_amplitude_on_a_logarithmic_axis(browser, result, tmp_path):
     curves = (
         made(frequency=lambda a: 100 - a, damping=lambda a: 1e-3 * a),
@@ -135,6 +136,7 @@ def test_backbones_zoom_over_amplitude_on_a_logarithmic_axis(browser, result, tm
         assert page.locator("h3", has_text="Error bounds of mode 1 over amplitude").count() == 2
 
 
+@pytest.mark.slow
 def test_measured_points_are_marked_on_the_curves_of_a_backbone(browser, result, tmp_path):
     points = {"measured_acceleration": [0.5, 5.0, 40.0], "measured_frequency": [98.0, 95.0, 80.0]}
     curve = replace(made(frequency=lambda a: 100 - a, damping=0.01), **points, measured_damping=[0.01, np.nan, 0.02])

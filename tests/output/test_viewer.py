@@ -183,7 +183,10 @@ def test_everything_works_by_keyboard_alone(view):
     assert view.locator(".fv-facts").inner_text() == ""
 
 
-@pytest.mark.parametrize(("width", "scale"), [(1280, 1), (800, 1), (640, 2), (400, 1)])
+@pytest.mark.parametrize(
+    ("width", "scale"),
+    [pytest.param(1280, 1, marks=pytest.mark.slow), pytest.param(800, 1, marks=pytest.mark.slow), (640, 2), (400, 1)],
+)
 def test_nothing_is_cut_off_at_any_width(browser, address, width, scale):
     """640 CSS pixels at a scale of 2 is a window of 1280 at 200 % zoom."""
     with opened(browser, address, width=width, height=700, device_scale_factor=scale) as page:

@@ -42,6 +42,7 @@ faying.run("study.toml").no_such_field
 """
 
 
+@pytest.mark.slow
 def test_a_users_script_passes_and_its_faults_are_found(tmp_path: Path) -> None:
     good, bad = tmp_path / "good.py", tmp_path / "bad.py"
     good.write_text(GOOD)

@@ -31,7 +31,10 @@ def rows(problem):
         return {row["quantity"]: row for row in csv.DictReader(file)}
 
 
-@pytest.mark.parametrize("problem", PROBLEMS)
+LONG = ("6-tapped-bracket", "7-random-vibration")
+
+
+@pytest.mark.parametrize("problem", [pytest.param(one, marks=[pytest.mark.slow] * (one in LONG)) for one in PROBLEMS])
 def test_the_code_of_a_page_finds_the_reference(problem, monkeypatch):
     """Each row of the table, and no other, within its tolerance."""
     (code,) = re.findall(r"```python\n(.*?)```", (FOLDER / problem / "README.md").read_text(encoding="utf-8"), re.S)

@@ -141,6 +141,7 @@ def test_the_head_slides_at_the_deflection_of_a_guided_cantilever():
     assert found.slide_motion[0] == pytest.approx(exact, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_force_that_turns_turns_its_answer(state):
     """The section is square: y and z are alike."""
     point = state.structure.mesh.points[np.argmax(state.structure.mesh.points @ [1.0, 1e-3, 1e-3])]
@@ -265,7 +266,7 @@ def test_a_table_comes_from_a_file(tmp_path):
     assert faying.Excitation("f", psd=file).table.values / 9.80665**2 == pytest.approx([0.01, 0.04])
 
 
-@pytest.mark.parametrize("kind", ["random", "sine"])
+@pytest.mark.parametrize("kind", [pytest.param("random", marks=pytest.mark.slow), "sine"])
 def test_twins_of_a_square_bar_slip_as_one_mode_along_what_shakes_it(kind):
     """Directions that are alike in the section, along sides, diagonals and between, have the same motion.
 

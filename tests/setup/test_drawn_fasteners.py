@@ -96,6 +96,7 @@ def test_a_tube_wider_than_any_pin_is_no_dowel(tmp_path):
     assert all("dowel" not in remark for remark in found.remarks)
 
 
+@pytest.mark.slow
 def test_drawn_bolts_are_parts_with_their_nuts_on_request(tmp_path):
     """A screw in a thread stays a beam; washers are parts with their own joints."""
     path, _ = drawn.hexagon_and_nut(tmp_path / "nuts.step")

@@ -158,7 +158,9 @@ def test_a_draw_of_the_band_is_that_of_a_full_run(coarse, assumed):
     assert "waves-assumed" not in [note.code for note in full.notes]
 
 
-@pytest.mark.parametrize("form", [Form(), Form(crown_along=3e-6)], ids=["flat", "crowned"])
+@pytest.mark.parametrize(
+    "form", [Form(), pytest.param(Form(crown_along=3e-6), marks=pytest.mark.slow)], ids=["flat", "crowned"]
+)
 def test_a_form_that_is_given_has_no_waves(coarse, form):
     result = run(replace(coarse, joints=(replace(coarse.joints[0], form=form),)))
     assert result.wave_frequencies is None

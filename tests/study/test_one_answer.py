@@ -99,10 +99,14 @@ def by_command(*words):
     return json.loads(out.output)
 
 
+# one law of each kind
+FAST = (("template", "half-space"), ("template", "jk"), ("synthetic", "persson"))
+
+
 @pytest.mark.parametrize(
     ("scan", "model"),
     [
-        pytest.param(scan, model, marks=[pytest.mark.slow] * (scan == "milled" and model in ("me", "gw-ke", "persson")))
+        pytest.param(scan, model, marks=[pytest.mark.slow] * ((scan, model) not in FAST))
         for scan in SCANS
         for model in MODELS
     ],

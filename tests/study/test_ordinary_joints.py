@@ -95,7 +95,7 @@ def test_a_thread_longer_than_its_hole_is_refused(screwed, fitted):
         replace(deep, faces=seats).placed(mesh)
 
 
-@pytest.fixture(scope="module", params=[0.0, 2.0])
+@pytest.fixture(scope="module", params=[pytest.param(0.0, marks=pytest.mark.slow), 2.0])
 def flanged(request, tmp_path_factory):
     """Flanges with raised faces of so many mm: path, study, structure."""
     folder = tmp_path_factory.mktemp("flanges")

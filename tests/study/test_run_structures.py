@@ -112,6 +112,7 @@ def test_the_same_without_response_has_the_same_modes_and_a_heavier_one_lower(fo
     assert np.all(heavier.frequencies <= result.frequencies * (1 + 1e-9))
 
 
+@pytest.mark.slow
 def test_viscous_dampers_say_that_they_depend_on_the_mesh(folder):
     given = data(folder, "")
     given["modes"]["damping"] = "viscous"

@@ -212,7 +212,7 @@ def test_the_theory_page_states_the_bias_that_each_estimator_declares():
     assert METHODS[0] == "psd"  # the default
 
 
-@pytest.mark.parametrize("D", [2.2, 2.41])
+@pytest.mark.parametrize("D", [pytest.param(2.2, marks=pytest.mark.slow), 2.41])
 def test_a_plateau_of_long_waves_is_not_taken_for_the_power_law(D):
     # 4.1 mm with a roll-off at 60 um: the plateau is the wider band, the power law lies beyond it
     scan = spectral((1640, 1640), spacing=2.5e-6, D=D, Rq=1e-6, longest=60e-6, seed=1)

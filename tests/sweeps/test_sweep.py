@@ -121,6 +121,7 @@ def test_what_an_interruption_changes(plan, tmp_path, monkeypatch):
         assert np.array_equal(getattr(parts, name), getattr(whole, name)), name
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="locks of POSIX")
 def test_two_sweeps_into_one_file(plan, tmp_path, monkeypatch):
     def second(*given):
@@ -165,12 +166,14 @@ def test_a_half_made_by_another_version_is_refused(plan, tmp_path, monkeypatch):
     assert (tmp_path / "out.nc.part").is_dir()  # it is not Faying's to throw away
 
 
+@pytest.mark.slow
 def test_processes_give_the_same(plan, done, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "CHUNK", 6)
     there = sweep(plan, axes(), tmp_path / "out.nc", jobs=2)
     assert there.frequencies == pytest.approx(done.frequencies, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_points_beyond_the_law_are_held_there_and_counted(plan, tmp_path):
     found = sweep(plan, axes("bolt.preload=1 kN,2 kN,400 kN,800 kN"), tmp_path / "out.nc")
     assert np.isfinite(found.frequencies).all()

@@ -43,6 +43,7 @@ def test_mypy_accepts_them_in_strict_mode(tmp_path):
     assert found.returncode == 0, found.stdout
 
 
+@pytest.mark.slow
 def test_pyright_accepts_them(tmp_path):
     pytest.importorskip("basedpyright", reason="the checker pyright is not installed")
     for script in SCRIPTS:
