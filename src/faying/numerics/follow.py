@@ -36,12 +36,12 @@ def same_group(frequencies: Array) -> Mask:
 
 
 def between_by_rank(values: Array, least: Array, most: Array) -> Array:
-    """Frequencies (..., m) of modes in any order between the least and the most (..., m) that the order allows.
+    """Frequencies (..., m) of modes in any order between the least and the most (..., m), which are sorted as well.
 
     A stiffer joint raises the lowest frequency, the second lowest, and so on: not that of a mode that others pass.
     """
     order = np.argsort(values, axis=-1)
-    ranked = np.clip(np.take_along_axis(values, order, axis=-1), least, most)
+    ranked = np.clip(np.take_along_axis(values, order, axis=-1), np.sort(least), np.sort(most))
     return np.take_along_axis(ranked, np.argsort(order, axis=-1), axis=-1)
 
 
