@@ -93,7 +93,6 @@ EXCEPTIONS = {
     "export/attach.py:attach": PUBLIC,
     "backbones/backbone.py:backbone": PUBLIC,
     "surface/synthesize.py:spectral": PUBLIC,
-    "surface/synthesize.py:weierstrass_mandelbrot": PUBLIC,
 }
 LONGEST, MOST_PARAMETERS = 60, 8
 

@@ -64,11 +64,6 @@ CALLS = {
         {"shape": (16, 16), "spacing": 1e-6, "D": 2.4, "Rq": 1e-7, "longest": 1e-5, "periodic": False, "gamma": 1.5}
         | {"shortest": 3e-6, "convention": "yan-komvopoulos", "seed": 1, "lay": (0.1, 2.0)},
     ),
-    "synthesize.weierstrass_mandelbrot": (
-        synthesize.weierstrass_mandelbrot,
-        {"shape": (16, 16), "spacing": 1e-6, "D": 2.4, "G": 1e-10, "gamma": 1.5, "ridges": 3, "length": 2e-5}
-        | {"shortest": 3e-6, "convention": "yan-komvopoulos", "seed": 1},
-    ),
     "synthesize.with_noise": (synthesize.with_noise, {"scan": SCAN, "rms": 1e-9, "seed": 1}),
     "synthesize.with_missing": (synthesize.with_missing, {"scan": SCAN, "share": 0.1, "seed": 1}),
     "read_scan": (faying.read_scan, {"path": "SCAN.csv", "xy_unit": "mm", "z_unit": "um", "spacing": 1e-6}),
@@ -249,7 +244,6 @@ GOOD = {
     "unit of Distribution.read": {"empty text"},  # a plain number
     "other": {"scan"},
     "counter": {"scan"},
-    "seed of synthesize.weierstrass_mandelbrot": {"None"},
     # NaN stands for a surface without D and G
     **{f"{name} of {of}": {"nan"} for name in "DG" for of in ("FractalSurface", "SurfaceInputs")},
     **{f"{name} of SurfaceInputs.from_heights": {"nan"} for name in "DG"},

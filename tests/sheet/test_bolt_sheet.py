@@ -11,7 +11,9 @@ import pytest
 import faying
 from faying import units
 from faying.answer.run import run
+from faying.case.case import Case
 from faying.case.scatter import DEFAULT_WAY, preload_scatter
+from faying.case.service_bolts import service_bolts
 from faying.cli.main import main
 from faying.sheet import page as shown
 from faying.sheet.bolt_loads import AtPreload, BoltLoad
@@ -256,12 +258,38 @@ def test_a_bolt_has_its_own_table(made):
         ({"transverse": "-1 N"}, "should be 0 or more"),
         ({"thread_friction": 0.0}, "should be a plain number from 0.02 to 0.8"),
         ({"rolled": "never"}, "rolled"),
+        ({"curve": {"knee": 1e6}}, "curve.endurance is missing"),
+        ({"curve": {"endurance": 40}}, "unit"),
+        ({"curve": {"endurance": "40 MPa"}, "fatigue": "iec"}, "both fatigue and curve"),
         ([{"axial": "1 kN"}, {"clamp": "1 kN"}], "two tables name no bolt"),
     ],
 )
 def test_faults_of_the_table(made, table, text):
     with pytest.raises(faying.InputError, match=text):
         made(bolt_sheet=table)
+
+
+def test_a_curve_of_its_own_has_the_slope_of_haibach_below(made):
+    study = made(bolt_sheet={"curve": {"endurance": "40 MPa", "knee": 1e6, "slope": 5}})
+    (bolt,) = service_bolts(Case.of(study).structure, study)
+    # 1e6 cycles at the knee; at half of the endurance 2^(2*5 - 1) times as many
+    assert bolt.damage(40e6, 1e6, mean=0.0) == pytest.approx(1, rel=1e-12)
+    assert bolt.damage(20e6, 1e6, mean=5e3) == pytest.approx(2.0**-9, rel=1e-12)
+    assert bolt.damage(80e6, 1e6, mean=5e3) == pytest.approx(2.0**5, rel=1e-12)
+
+
+def test_a_thread_rolled_after_heat_treatment_has_one_endurance_in_sheet_and_service(made):
+    """The sheet's own step at the same mean force, and at yield that of a thread rolled before."""
+    study = made(bolt_sheet=SAID | {"rolled": "after"})
+    (bolt,) = service_bolts(Case.of(study).structure, study)
+    (sheet,) = bolt_sheet(study).sheets
+    (row,) = [row for row in sheet.rows if row.result.symbol == "sigma_ASG"]
+    given = {one.symbol: one.value for one in row.inputs}
+    assert bolt.curve(given["F_Sm"]).endurance == pytest.approx(row.result.value, rel=1e-12)
+    assert bolt.curve(given["R_p"] * given["A_S"]).endurance == pytest.approx(given["sigma_ASV"], rel=1e-12)
+    assert bolt.curve(0.0).endurance == pytest.approx(2 * given["sigma_ASV"], rel=1e-12)
+    unknown = made(bolt={}, bolt_sheet={"rolled": "after"})
+    assert service_bolts(Case.of(unknown).structure, unknown)[0].curve(1e3) is None
 
 
 def test_friction_of_the_bolt_counts_where_the_sheet_says_none(made):

@@ -9,7 +9,7 @@ from faying import InputError
 from faying.surface import fpenn
 from faying.surface.convention import prefactor
 from faying.surface.moments import from_series_moments, series_frequencies
-from faying.surface.synthesize import weierstrass_mandelbrot
+from tests.helpers.weierstrass import weierstrass_mandelbrot
 
 
 def series_moments(D, G, *, length, terms, gamma=1.5, convention="yan-komvopoulos"):

@@ -21,7 +21,8 @@ from faying.surface.spectrum import (
     spectrum,
     structure_function,
 )
-from faying.surface.synthesize import spectral, weierstrass_mandelbrot
+from faying.surface.synthesize import spectral
+from tests.helpers.weierstrass import weierstrass_mandelbrot
 
 
 def test_the_integral_of_the_spectrum_is_the_mean_square_height():

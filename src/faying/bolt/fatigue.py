@@ -79,6 +79,11 @@ class FatigueCurve:
         return float(np.sum(np.asarray(cycles, dtype=float) / self.cycles(amplitude)))
 
 
+def rolled_after(endurance: float, share: float) -> float:
+    """Endurance [Pa] of a thread rolled after heat treatment; share: its mean force over that at yield [-]."""
+    return endurance * max(2 - share, 1.0)  # VDI 2230 Part 1:2015, section 5.5.3
+
+
 def endurance(d: float) -> float:
     """Stress amplitude [Pa] that a thread rolled before heat treatment bears 2e6 times and more; d: diameter [m]."""
     return 0.85 * (150 / (1e3 * d) + 45) * 1e6

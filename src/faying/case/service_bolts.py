@@ -1,12 +1,12 @@
 """What is known of each bolt that slip under its head and fatigue need."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faying.bolt.bolt import Bolt, FittedBolt
-from faying.bolt.fatigue import FatigueCurve
+from faying.bolt.bolt import Bolt, FittedBolt, fatigue_area
+from faying.bolt.fatigue import FatigueCurve, rolled_after
 from faying.joint.bolted import BoltedStructure
 from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of, frictions_of
 from faying.study.study import Study
@@ -21,21 +21,32 @@ class ServiceBolt:
 
     Args:
         head_friction: Coefficient under its head [-].
-        fatigue: Curve of its fatigue.
+        fatigue: Curve of its fatigue, of a thread rolled before heat treatment.
+        yield_force: Its force at yield [N] where the thread is rolled after heat treatment and bears more the less it
+            is pulled; None where it is not.
         guided_compliance: Transverse motion of its head over the force across it [m/N].
     """
 
     head_friction: float
     fatigue: FatigueCurve | None
+    yield_force: float | None
     guided_compliance: float
 
     def slide_motion(self, force: float) -> float:
         """Transverse motion of the head [m] at which it slides under a bolt force [N]."""
         return self.head_friction * force * self.guided_compliance
 
-    def damage(self, amplitude: float, cycles: float) -> float:
-        """Damage [-] of cycles at an amplitude of stress [Pa]."""
-        return NAN if self.fatigue is None else self.fatigue.damage(np.array(amplitude), np.array(cycles))
+    def curve(self, mean: float) -> FatigueCurve | None:
+        """The curve of its fatigue at a mean force [N]."""
+        if self.fatigue is None or self.yield_force is None:
+            return self.fatigue
+        limit = rolled_after(self.fatigue.endurance, mean / self.yield_force)
+        return replace(self.fatigue, endurance=limit) if limit > 0 else None  # NaN where no class is given
+
+    def damage(self, amplitude: float, cycles: float, mean: float) -> float:
+        """Damage [-] of cycles at an amplitude of stress [Pa] about a mean force [N]."""
+        curve = self.curve(mean)
+        return NAN if curve is None else curve.damage(np.array(amplitude), np.array(cycles))
 
 
 def service_bolts(structure: BoltedStructure, study: Study | None = None) -> tuple[ServiceBolt, ...]:
@@ -50,8 +61,13 @@ def service_bolts(structure: BoltedStructure, study: Study | None = None) -> tup
             compliance = fitted.guided_compliance
         _, head = frictions_of(choice, bolt)
         friction = NAN if head is None else head
-        curve = None if size is None else FatigueCurve.iec(size) if choice.fatigue == "iec" else FatigueCurve.vdi(size)
-        out.append(ServiceBolt(head_friction=friction, fatigue=curve, guided_compliance=compliance))
+        curve, force = choice.curve, None
+        if curve is None and size is not None:
+            curve = FatigueCurve.iec(size) if choice.fatigue == "iec" else FatigueCurve.vdi(size)
+            if choice.fatigue == "vdi" and choice.rolled == "after":
+                force = NAN if bolt.fastener is None else bolt.fastener.yield_stress * fatigue_area(fitted)
+        made = ServiceBolt(head_friction=friction, fatigue=curve, yield_force=force, guided_compliance=compliance)
+        out.append(made)
     return tuple(out)
 
 

@@ -213,7 +213,7 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
     names = [load.name for load in loads]
     starts = [None if load.after is None else names.index(load.after) for load in loads]
     arrays = bolt_answers(structure, contacts, forces, list(zip(states, motions, straight, strict=True)), starts, paths)
-    arrays |= _in_service(base.bolts, forces, arrays["stress_amplitude"], [load.cycles for load in loads])
+    arrays |= _in_service(base.bolts, forces, arrays, starts, [load.cycles for load in loads])
     arrays |= joint_answers(structure, contacts, states, dissipated, paths)
     with_linear = arrays["bolt_force"], arrays["bolt_force_linear"]
     pressures = [[-traction[:, 0] for traction in state.tractions] for state in states]
@@ -250,11 +250,23 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
 
 
 def _in_service(
-    bolts: Sequence[ServiceBolt], forces: Array, stress: Array, cycles: Sequence[float]
+    bolts: Sequence[ServiceBolt],
+    forces: Array,
+    arrays: Mapping[str, Array],
+    starts: Sequence[int | None],
+    cycles: Sequence[float],
 ) -> dict[str, Array]:
-    """Friction under heads, where they slide, and damage by cycles of the stress amplitudes [Pa] (case, bolt)."""
+    """Friction under heads, where they slide, and damage by cycles of the stress amplitudes (case, bolt).
+
+    forces: Of the preload [N] (bolt,); arrays, starts: what bolts bear in each case, and which case each starts from.
+    """
     pairs = list(zip(bolts, forces.tolist(), strict=True))
-    damage = [[b.damage(a, n) for b, a in zip(bolts, row, strict=True)] for row, n in zip(stress, cycles, strict=True)]
+    stress, to = arrays["stress_amplitude"], arrays["bolt_force"]
+    means = [(one + (forces if k is None else to[k])) / 2 for one, k in zip(to, starts, strict=True)]
+    damage = [
+        [b.damage(a, n, mean) for b, a, mean in zip(bolts, row, mean_row, strict=True)]
+        for row, mean_row, n in zip(stress, means, cycles, strict=True)
+    ]
     return {
         "head_friction": head_frictions(bolts),
         "slide_motion": np.array([bolt.slide_motion(force) for bolt, force in pairs]),

@@ -59,6 +59,11 @@ class Shaken:
         """Force of each bolt under the preload [N] (b,)."""
         return np.array(self.preload.bolt_forces)
 
+    @property
+    def curves(self) -> list[FatigueCurve | None]:
+        """The curve of fatigue of each bolt under its preload."""
+        return [bolt.curve(force) for bolt, force in zip(self.bolts, self.forces.tolist(), strict=True)]
+
 
 @dataclass(frozen=True, kw_only=True)
 class _Answering:
@@ -164,7 +169,7 @@ def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> 
     worst = np.argmax(np.nan_to_num(moments[..., 0]), axis=-1)[..., None]
     out["stress"] = np.sqrt(np.take_along_axis(moments[..., 0], worst, axis=-1)[..., 0]).max(axis=1)
     every = moments.reshape(len(moments), -1, 4)
-    out["damage"] = np.array([_most_damage(b.fatigue, one) for b, one in zip(given.base.bolts, every, strict=True)])
+    out["damage"] = np.array([_most_damage(c, one) for c, one in zip(given.base.curves, every, strict=True)])
     full = np.concatenate([coordinates, np.ones((1, len(frequencies)))])
     out["part_stress"], out["part_place"] = _worst_stress(given, products(full))
     lines = _coordinates(excited, speeds, dampings, given.lines)
@@ -227,7 +232,7 @@ def _sine(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> di
     flat = stress.reshape(len(stress), -1, len(frequencies))
     out["stress"] = flat.max(axis=(1, 2)) if flat.shape[1] else np.zeros(len(flat))
     out["damage"] = np.array(
-        [_swept_damage(bolt.fatigue, some, frequencies) for bolt, some in zip(given.base.bolts, flat, strict=True)]
+        [_swept_damage(curve, some, frequencies) for curve, some in zip(given.base.curves, flat, strict=True)]
     )
     energy = np.sum(np.abs(excited.speeds[:, None] * coordinates) ** 2, axis=0)
     most = int(np.argmax(energy))  # where the most energy is

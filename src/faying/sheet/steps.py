@@ -6,7 +6,7 @@ from dataclasses import replace
 from inspect import signature
 from math import pi, sqrt, tan
 
-from faying.bolt.fatigue import endurance
+from faying.bolt.fatigue import endurance, rolled_after
 from faying.bolt.vdi2230 import reduced_stress, thread_torque
 from faying.sheet.rows import Step
 
@@ -155,7 +155,7 @@ STEPS = (
     _step(
         "R9 sigma_ASG [Pa]: endurance limit, rolled after heat treatment",
         "that before heat treatment times (2 - mean force over the force at yield)",
-        lambda sigma_ASV, F_Sm, R_p, A_S: sigma_ASV * max(2 - F_Sm / (R_p * A_S), 1.0),
+        lambda sigma_ASV, F_Sm, R_p, A_S: rolled_after(sigma_ASV, F_Sm / (R_p * A_S)),
     ),
     _step(
         "R9 sigma_a [Pa]: alternating stress",

@@ -5,15 +5,17 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from faying.bolt.bolt import BOLT_FRICTION, Bolt
+from faying.bolt.fatigue import KNEE, SLOPE, FatigueCurve
 from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.tightening import tightening
 from faying.errors import InputError
 from faying.materials import MOST_FRICTION
-from faying.study.declaration.declared import QUANTITY, WORDS, Declared, Key, listed, one_or_more
+from faying.study.declaration.declared import QUANTITY, REQUIRED, WORDS, Declared, Inner, Key, listed, one_or_more
 from faying.study.declaration.reader import Table
 from faying.study.declaration.values import quantity
 
 MAX_FACTOR = 10.0  # greatest tightening factor that is not a slip of the pen
+MAX_SLOPE = 100.0  # of a curve of fatigue: from there on it is as good as upright
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,6 +38,7 @@ class BoltSheetChoice:
         shear_strength: Of the tapped part [Pa].
         rolled: When the thread is rolled, "before" or "after" heat treatment.
         fatigue: Curve of its fatigue: "vdi", VDI 2230, or "iec", IEC 61400-6.
+        curve: One of its own in its place.
     """
 
     bolt: str | None = None
@@ -54,6 +57,7 @@ class BoltSheetChoice:
     shear_strength: float | None = None
     rolled: Literal["before", "after"] = "before"
     fatigue: Literal["vdi", "iec"] = "vdi"
+    curve: FatigueCurve | None = None
 
     @classmethod
     def of(cls, table: Table, bolts: Sequence[str], cases: Sequence[str]) -> "BoltSheetChoice":
@@ -77,11 +81,21 @@ class BoltSheetChoice:
             bolt=name,
             loads=loads,
             way=way,
-            **{key: table.get(key) for key in BOLT_SHEET if key not in ("bolt", "tightening", "load")},
+            **{key: table.get(key) for key in BOLT_SHEET if key not in ("bolt", "tightening", "load", "curve")},
+            curve=table.inner("curve", _curve),
         )
         if way is not None and choice.tightening_factor is not None:
             table.faults.add(f"{table.where} has both tightening and tightening_factor; give one of them")
+        if choice.curve is not None and "fatigue" in table.data:
+            table.faults.add(f"{table.where} has both fatigue and curve; give one of them")
         return choice
+
+
+def _curve(table: Table) -> FatigueCurve | None:
+    given = {key: table.get(key) for key in CURVE}
+    slope = given["slope"]
+    given["slope_below"] = given["slope_below"] or 2 * slope - 1  # Haibach 1970, as the curve of VDI 2230
+    return None if given["endurance"] is None else FatigueCurve(**given)
 
 
 def frictions_of(choice: BoltSheetChoice, bolt: Bolt | SolidBolt) -> tuple[float | None, float | None]:
@@ -143,6 +157,14 @@ def _force(says: str) -> Key:
     return Key("quantity [N], 0 or more", QUANTITY, says, read=read, unit="N")
 
 
+CURVE: Declared = {
+    "endurance": Key.quantity("Pa", "Amplitude of stress, half of a range, at the knee.", REQUIRED),
+    "knee": Key.within(1e3, 1e10, "Cycles at the knee.", KNEE),
+    "slope": Key.within(1.0, MAX_SLOPE, "Slope above the knee: cycles fall with its power of the amplitude.", SLOPE),
+    "slope_below": Key.within(
+        1.0, MAX_SLOPE, "Slope below; 2 slope - 1 where left out. At 100 lower amplitudes do no damage."
+    ),
+}
 BOLT_SHEET: Declared = {
     "bolt": Key.text("The bolt; all that no other table names where left out."),
     "tightening": Key.text(
@@ -188,4 +210,5 @@ BOLT_SHEET: Declared = {
     "shear_strength": Key.quantity("Pa", "Shear strength of the part that is tapped."),
     "rolled": Key.text("Whether the thread is rolled before or after heat treatment.", "before", ("before", "after")),
     "fatigue": Key.text("Curve of fatigue in vibration: VDI 2230, or IEC 61400-6.", "vdi", ("vdi", "iec")),
+    "curve": Inner(says="Curve of fatigue of its own, in place of fatigue.", keys=CURVE),
 }
