@@ -9,19 +9,19 @@ from typing import Any, Literal
 import numpy as np
 
 from faying import units
-from faying.case.case import checked_mesh, joint_law, structure_of, surfaces_of
+from faying.case.case import Progress, checked_mesh, joint_law, surfaces_of
 from faying.checks import number
 from faying.columns import read_columns
 from faying.decks.deck import ContactProperty, JointDeck, UnitSystem, write
 from faying.decks.meshfile import last_element
 from faying.errors import InputError, ReadError
+from faying.export.condense import at_preload
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.fe.sides import face_centre
 from faying.joint.joint_law import JointLaw
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.joint.preload_case import preload_index
-from faying.joint.support_check import checked_preload
 from faying.materials import Material
 from faying.misuse import checked_call
 from faying.notes import percent
@@ -209,7 +209,7 @@ def attach(
     materials = _materials(study, mesh)
     notes = [*(note.text for note in mesh.notes), *_apart(mesh, faces, interface)]
     if solving:
-        law, at_points, origin = _solved(moved, mesh, faces, preload)
+        law, at_points, origin = _solved(moved, faces, preload)
     else:
         (surface,) = surfaces_of(replace(study, joints=(spec,)))
         law = joint_law(spec, study.law_of(spec), surface, *(materials[mesh.face_part[face]] for face in faces))
@@ -323,7 +323,7 @@ def _materials(study: Study, mesh: Mesh) -> dict[str, Material]:
     return {part: study.materials[study.parts.get(part, only)] for part in mesh.parts}
 
 
-def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
+def _solved(study: Study, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
     """JointLaw and pressure [Pa] at the points of the interface under the study's bolts."""
     loads = study.loads
     if preload is None and len(loads) > 1:
@@ -335,11 +335,10 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
             f"{study.load_names[number]}: springs at nodes are those of first loading, and this joint has carried more "
             "before; faying condense takes it"
         )
-    structure = structure_of(study, mesh, surfaces_of(study))
-    state = checked_preload(structure, structure.assembly(solver=study.modes.solver), study.preloads[number])
-    place = next(i for i, joint in enumerate(structure.joints) if joint.faces == faces)
-    origin = f"of the study's bolts at {units.show(loads[number], 'N')}"
-    return structure.under(state).joints[place].law, state.pressures[place], origin
+    case, springs = at_preload(study, number, Progress(number + 1))
+    joints = case.structure.joints
+    place = next(i for i, joint in enumerate(joints) if joint.faces == faces)
+    return joints[place].law, springs[place].pressure, f"of the study's bolts at {units.show(loads[number], 'N')}"
 
 
 def _pairs(interface: Interface, law: JointLaw, pressure: Array, coupling: str) -> tuple[NodePairs, Array]:
