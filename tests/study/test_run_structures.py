@@ -174,4 +174,5 @@ def test_part_by_part_gives_the_same_answer(folder, result):
     assert found.bolt_forces == pytest.approx(result.bolt_forces[:1], rel=1e-7)
     assert found.pressure == pytest.approx(result.pressure[:1], rel=1e-5, abs=1e-5 * result.pressure.max())
     size = np.abs(result.response.values).max()
-    assert found.response.values == pytest.approx(result.response.values[:1], abs=1e-6 * size)
+    # two shapes are in each term, each found to 1e-4 (`faying.joint.modal.EXACT`)
+    assert found.response.values == pytest.approx(result.response.values[:1], abs=2e-4 * size)
