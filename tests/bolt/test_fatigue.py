@@ -64,7 +64,7 @@ def test_dirlik_becomes_the_narrow_band():
     ("peaks", "within"),
     [
         (((20, 1.0), (90, 1.0)), 0.10),
-        pytest.param(((40, 2.0), (60, 0.5), (200, 0.05)), 0.10, marks=pytest.mark.slow),
+        (((40, 2.0), (60, 0.5), (200, 0.05)), 0.10),
         pytest.param(((30, 1.0),), 0.10, marks=pytest.mark.slow),
         (((15, 4.0), (60, 0.2), (200, 0.05)), 0.20),  # far apart: his distribution is known to miss most there
     ],

@@ -76,7 +76,6 @@ def test_full_response_answers_the_full_equations(solved):
         assert np.linalg.norm(full.receptance[:, :, k] - direct) < 2e-3 * np.linalg.norm(direct)
 
 
-@pytest.mark.slow
 def test_many_inputs_are_solved_the_other_way_round(solved):
     nodes = solved.structure.outline()[0][[3, 40, 90]]
     many, one = (nodes, np.eye(3)), (nodes[:1], np.eye(3)[2:])

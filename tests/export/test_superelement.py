@@ -93,7 +93,6 @@ def test_loss_is_that_of_the_joint(file, found):
     assert lost[: len(known.loss)] == pytest.approx(known.loss, rel=1e-2)
 
 
-@pytest.mark.slow
 def test_loss_of_the_parts(file, found):
     """structural_loss adds that share of their stiffness: all of a held mode's that does not move the joint."""
     damped, place = file.with_name("damped.toml"), '{ point = ["40 mm", "15 mm", "15 mm"], direction = [0, 0, 1] }'
