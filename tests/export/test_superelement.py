@@ -150,8 +150,11 @@ READ = """
 import sys, json
 from pyNastran.bdf.bdf import read_bdf
 model = read_bdf(sys.argv[1], xref=False, punch=True, debug=None)
-read = {name: matrix.get_matrix(is_sparse=False) for name, matrix in model.dmig.items()}
-print(json.dumps({name: [A.tolist(), [[int(i) for i in rows[k]] for k in range(len(A))]] for name, (A, rows, _) in read.items()}))
+read = {}
+for name, matrix in model.dmig.items():
+    A, rows, _ = matrix.get_matrix(is_sparse=False)
+    read[name] = [A.tolist(), [[int(i) for i in rows[k]] for k in range(len(A))]]
+print(json.dumps(read))
 """
 
 
