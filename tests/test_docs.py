@@ -10,8 +10,8 @@ from pathlib import Path
 
 import click
 import pytest
-from click.testing import CliRunner
 
+from faying.cli import main
 from faying.cli.main import cli
 
 ROOT = Path(__file__).parent.parent
@@ -67,6 +67,13 @@ COMMANDED, CALLED = (
 )
 
 
+def called(line):
+    """Call the command of a page in this process: to start two hundred of them takes minutes, and tests/cli does."""
+    with pytest.raises(SystemExit) as stop:
+        main(shlex.split(fewer(line)))
+    assert stop.value.code == 0, f"faying {line}"
+
+
 @pytest.mark.parametrize("page", COMMANDED)
 def test_commands(page, checkout):
     """They run, in one folder; what they write there lies where git does not see it."""
@@ -88,10 +95,7 @@ def test_commands(page, checkout):
         if line == "run lap.toml":  # a minute long; tests/setup/test_new.py runs such a study
             assert any(words.startswith("new ") and "lap.toml" in words for words in commands(page))
             continue
-        done = subprocess.run(
-            [sys.executable, "-m", "faying", *shlex.split(fewer(line))], capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, f"faying {line}\n{done.stderr}"
+        called(line)
     made = [str(path.relative_to(checkout)) for path in checkout.rglob("*") if path.is_file() and path not in before]
     if made and (ROOT / ".git").exists() and shutil.which("git"):
         told = subprocess.run(
@@ -102,15 +106,13 @@ def test_commands(page, checkout):
 
 def test_one_folder_holds_the_studies_of_all_pages(checkout):
     for line in [line for page in PAGES for line in commands(page) if line.startswith("init ")]:
-        done = CliRunner().invoke(cli, shlex.split(line))
-        assert done.exit_code == 0, done.output
+        called(line)
 
 
 @pytest.mark.parametrize("page", CALLED)
 def test_python_blocks(page, checkout):
     for block in blocks(page, "python"):
-        done = subprocess.run([sys.executable, "-c", fewer(block)], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, f"{block}\n{done.stderr}"
+        exec(compile(fewer(block), str(page), "exec"), {"__name__": "__main__"})
 
 
 def test_the_readme_has_commands():
