@@ -105,8 +105,10 @@ def test_ten_twins_of_another_mesh_law_and_form(tmp_path):
     more = SCATTER.replace('joint.form.twist = "0 um to 2 um"\n', 'preload = {scatter = "2 %"}\n')
     plan = study_of(tmp_path, more)
     path = tmp_path / "study.toml"
-    path.write_text(path.read_text().replace("flat = true", 'twist = "1 um"'))
-    plan = replace(Study.read(path), geometry=plan.geometry, modes=plan.modes)
+    text = path.read_text().replace("flat = true", 'twist = "1 um"')
+    # at 16 and 8 mm the error of the mesh in mode 3 is more than the test scatters, and 5 of 10 truths are inside
+    path.write_text(text.replace('size = "16 mm"', 'size = "12 mm"').replace('joint" = "8 mm"', 'joint" = "6 mm"'))
+    plan = replace(Study.read(path), modes=plan.modes)
     inside, covered, told, unseen = [], [], [], []
     loads, stage, reduced = np.array(plan.loads), _Stage(None), None
     shares = np.random.default_rng(5).permuted(np.tile((np.arange(10) + 0.5) / 10, (2, 1)), axis=1)
