@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.special import gamma
 
 from faying.bolt.fatigue import FatigueCurve, bending_modulus, dirlik, narrow_band, sweep_cycles
 from faying.errors import InputError
@@ -58,6 +59,24 @@ def test_dirlik_becomes_the_narrow_band():
     assert dirlik(CURVE, moments) == pytest.approx(narrow_band(CURVE, sigma, f), rel=1e-9)
     near = sigma**2 * np.array([1, 80.0, 80**2 * 1.0005, 80**4 * 1.003])
     assert dirlik(CURVE, near) == pytest.approx(narrow_band(CURVE, sigma, f), rel=0.05)
+
+
+def test_dirlik_of_one_slope_is_his_closed_form():
+    """Of his exponential and two Rayleigh parts, by gamma functions, for a band in which each of them counts."""
+    f = np.linspace(1, 100, 2001)
+    m0, m1, m2, m4 = (np.trapezoid(f**n * 1e14, f) for n in (0, 1, 2, 4))
+    gamma2, x = m2 / np.sqrt(m0 * m4), m1 / m0 * np.sqrt(m2 / m4)
+    D1 = 2 * (x - gamma2**2) / (1 + gamma2**2)
+    R = (gamma2 - x - D1**2) / (1 - gamma2 - D1 + D1**2)
+    D2 = (1 - gamma2 - D1 + D1**2) / (1 - R)
+    Q = 1.25 * (gamma2 - (1 - D1 - D2) - D2 * R) / D1
+    k = 4.0
+    parts = np.array([D1 * Q**k * gamma(1 + k), 2 ** (k / 2) * gamma(1 + k / 2) * D2 * abs(R) ** k])
+    last = 2 ** (k / 2) * gamma(1 + k / 2) * (1 - D1 - D2)
+    curve = FatigueCurve(endurance=50e6, slope=k, slope_below=k)
+    exact = np.sqrt(m4 / m2) / curve.knee * m0 ** (k / 2) / curve.endurance**k * (parts.sum() + last)
+    assert dirlik(curve, np.array([m0, m1, m2, m4])) == pytest.approx(exact, rel=1e-9)
+    assert parts.min() > 1e-4 * last
 
 
 @pytest.mark.parametrize(
