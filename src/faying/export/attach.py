@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from faying import units
-from faying.case.case import Progress, checked_mesh, joint_law, surfaces_of
+from faying.case.case import Case, Progress, checked_mesh, joint_law, structure_of, surfaces_of
 from faying.checks import number
 from faying.columns import read_columns
 from faying.decks.deck import ContactProperty, JointDeck, UnitSystem, write
@@ -209,7 +209,7 @@ def attach(
     materials = _materials(study, mesh)
     notes = [*(note.text for note in mesh.notes), *_apart(mesh, faces, interface)]
     if solving:
-        law, at_points, origin = _solved(moved, faces, preload)
+        law, at_points, origin = _solved(moved, mesh, faces, preload)
     else:
         (surface,) = surfaces_of(replace(study, joints=(spec,)))
         law = joint_law(spec, study.law_of(spec), surface, *(materials[mesh.face_part[face]] for face in faces))
@@ -323,7 +323,7 @@ def _materials(study: Study, mesh: Mesh) -> dict[str, Material]:
     return {part: study.materials[study.parts.get(part, only)] for part in mesh.parts}
 
 
-def _solved(study: Study, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
+def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | None) -> tuple[JointLaw, Array, str]:
     """JointLaw and pressure [Pa] at the points of the interface under the study's bolts."""
     loads = study.loads
     if preload is None and len(loads) > 1:
@@ -335,7 +335,9 @@ def _solved(study: Study, faces: tuple[str, str], preload: str | None) -> tuple[
             f"{study.load_names[number]}: springs at nodes are those of first loading, and this joint has carried more "
             "before; faying condense takes it"
         )
-    case, springs = at_preload(study, number, Progress(number + 1))
+    surfaces = surfaces_of(study)
+    case = Case(study=study, structure=structure_of(study, mesh, surfaces), surfaces=surfaces)
+    case, springs = at_preload(case, number, Progress(number + 1))
     joints = case.structure.joints
     place = next(i for i, joint in enumerate(joints) if joint.faces == faces)
     return joints[place].law, springs[place].pressure, f"of the study's bolts at {units.show(loads[number], 'N')}"

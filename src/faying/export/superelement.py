@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.case.case import Progress
+from faying.case.case import Case, Progress
 from faying.checks import number
 from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
 from faying.errors import InputError
@@ -200,7 +200,7 @@ def superelement(
     study, places = _named(Study.read_bolted(study), interfaces)
     index = preload_index(study.loads, preload, names=study.load_names)
     progress = Progress(STAGES + index, report)
-    case, springs = at_preload(study, index, progress)
+    case, springs = at_preload(Case.of(study, progress), index, progress)
     structure = case.structure
     names, points, rows, dofs = _interfaces(structure, places)
     progress.begin("modes")
