@@ -29,7 +29,8 @@ class FatigueCurve:
         endurance: Amplitude at the knee [Pa].
         knee: Cycles there.
         slope: Above the endurance.
-        slope_below: Below it; infinite where smaller amplitudes do no damage.
+        slope_below: Below it; infinite where smaller amplitudes do no damage. 0 stands for 2 slope - 1, for loads that
+            vary (Haibach 1970).
         source: What it rests on.
 
     Raises:
@@ -39,18 +40,18 @@ class FatigueCurve:
     endurance: float
     knee: float = KNEE
     slope: float = SLOPE
-    slope_below: float = 2 * SLOPE - 1
+    slope_below: float = 0.0
     source: str = "given"
 
     def __post_init__(self) -> None:
         for name in ("endurance", "knee", "slope"):
             number(getattr(self, name), name, least=0)
+        if not self.slope_below:
+            object.__setattr__(self, "slope_below", 2 * self.slope - 1)
 
     @classmethod
     def vdi(cls, diameter: float) -> Self:
         """The curve of a thread rolled before heat treatment, by its diameter [m].
-
-        Below the endurance the slope is 2k - 1, for loads that vary (Haibach 1970).
 
         Source:
             VDI 2230 Part 1:2015, section 5.5.3.

@@ -92,10 +92,8 @@ class BoltSheetChoice:
 
 
 def _curve(table: Table) -> FatigueCurve | None:
-    given = {key: table.get(key) for key in CURVE}
-    slope = given["slope"]
-    given["slope_below"] = given["slope_below"] or 2 * slope - 1  # Haibach 1970, as the curve of VDI 2230
-    return None if given["endurance"] is None else FatigueCurve(**given)
+    given = {key: value for key in CURVE if (value := table.get(key)) is not None}
+    return FatigueCurve(**given) if "endurance" in given else None
 
 
 def frictions_of(choice: BoltSheetChoice, bolt: Bolt | SolidBolt) -> tuple[float | None, float | None]:
