@@ -18,7 +18,7 @@ from faying.numerics.damped import damped_modes
 from faying.numerics.modes import lowest_modes
 from faying.reduction.part_shares import PartShares
 from faying.reduction.reduce import STATIC_SHARE, Reduction
-from faying.reduction.reduced import ReducedEquilibrium
+from faying.reduction.reduced import BLOCK, SLIGHT, ReducedEquilibrium, _complex_modes
 from tests.helpers.boxes import stack
 
 STEEL = faying.CATALOGUE["45 steel"]
@@ -210,6 +210,19 @@ def test_springs_of_one_pressure_carry_the_load(trained):
 def test_wrong_number_of_forces(trained):
     with pytest.raises(faying.InputError, match="2 bolt forces for 1 bolts"):
         trained[1].model.evaluate([law()], np.array([1.0, 2.0]), [None])
+
+
+def test_modes_on_both_sides_of_the_border_may_be_as_close_as_they_like():
+    """First order has no bound there: one of the small problem's modes lay below all others, with f^2 below 0."""
+    rng, count = np.random.default_rng(0), 3
+    for apart in (1e-1, 1e-3, 1e-6, 1e-9, 0.0):
+        real = 1e8 * np.arange(1, 61.0)
+        last = count + BLOCK - 1
+        real[last + 1] = real[last] * (1 + apart)
+        root = rng.normal(size=(60, 60)) * np.sqrt(1e-4 * real[:, None])
+        values, _ = _complex_modes(real, root @ root.T, count, SLIGHT)
+        whole = np.linalg.eigvals(np.diag(real) + 1j * root @ root.T)
+        assert values == pytest.approx(whole[np.argsort(whole.real)][:count], rel=2 * SLIGHT)
 
 
 def test_complex_modes_of_the_small_problem_are_those_of_all_its_vectors(trained):

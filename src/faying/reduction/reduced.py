@@ -23,6 +23,9 @@ _SINGLE = ("static_stiffness", "static_loads", "dynamic_stiffness", "dynamic_mas
 _OF_JOINTS = ("weights", "gaps", "static_relative", "dynamic_relative")
 OPENS = "preload: the joint opens fully on the way; load it in smaller steps"
 BALANCED = 1e-7  # imbalance at which a frequency is right to a tenth of that
+# square of what a mode takes up of those beyond the border, where first order holds: with one that is close it has no
+# bound, and the small problem then has a mode that is none and may lie below all others
+ACROSS = 0.1
 BLOCK = 36  # real modes beyond those wanted that meet them exactly under the loss
 REUSE_BELOW = 0.4  # of the force out of balance: a tangent that leaves less serves once more
 EVEN = 2  # times that joints of one pressure each are solved: the pressure is that of the last
@@ -85,7 +88,8 @@ def _complex_modes(real: Array, loss: Array, count: int, slight: float) -> tuple
     """Lowest complex eigenvalues (m,) and vectors (d, m) of diag(real) + i loss, in rising order.
 
     The lowest real modes, some more than are wanted, meet each other exactly; those above them join by what the loss
-    makes of them to first order. What that leaves is estimated, and where it is not slight the whole problem is solved.
+    makes of them to first order. What that leaves is estimated. Where it is not slight, or modes on both sides of the
+    border are close, the whole problem is solved.
     """
     from scipy.linalg import eig
 
@@ -95,7 +99,8 @@ def _complex_modes(real: Array, loss: Array, count: int, slight: float) -> tuple
         mix = 1j * loss[:low, low:] / apart
         # second-order shift of an eigenvalue, times the square of the greatest loss factor: what first order leaves
         left = np.sum(np.abs(mix * mix * apart), axis=1) / real[:low] * np.max(np.abs(np.diag(loss)) / real) ** 2
-    if low == len(real) or not left[:count].max() < slight:
+    across = np.sum(np.abs(mix) ** 2, axis=1).max(initial=0.0)
+    if low == len(real) or not (left[:count].max() < slight and across < ACROSS):
         values, vectors = eig(np.diag(real) + 1j * loss)
     else:
         span = np.concatenate([np.eye(low), mix], axis=1).T
