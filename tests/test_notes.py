@@ -1,10 +1,15 @@
 """Notes: what they mean for a result, and how many of a kind are said as one."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
-from faying.notes import LIMITS, WRONG, Note, by_severity, grave, grouped, percent
+import faying
+from faying.notes import CODES, INCOMPLETE, Note, by_severity, grave, grouped, percent
+
+SOURCE = Path(faying.__file__).parent
 
 
 def outside(load, share, joint="flange", why="fewer than 10 spots touch"):
@@ -82,7 +87,16 @@ def test_what_concerns_little_or_an_alternative_alone_comes_last():
     assert by_severity(notes, found) == {}
 
 
+def test_every_note_is_declared_once_with_its_severity():
+    declared = [code for codes in CODES.values() for code in codes]
+    assert len(declared) == len(set(declared))
+    text = "".join(file.read_text() for file in SOURCE.rglob("*.py") if file.name != "notes.py")
+    written = set(re.findall(r'\b(?:Note|self\._note)\((?:code=)?"([^"]+)"', text))
+    assert written <= set(declared)
+    assert not {code for code in declared if f'"{code}"' not in text} - {INCOMPLETE}
+    assert not re.findall(r'Note\(code=f"', text)  # a code that is put together is found by nobody
+
+
 def test_the_gravest_come_first():
-    assert not WRONG & LIMITS
     notes = [Note(code="mates", text="a"), outside(4, 0.2), Note(code="open", text="b")]
     assert list(by_severity(notes)) == ["wrong", "limit", "remark"]

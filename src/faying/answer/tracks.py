@@ -38,12 +38,12 @@ def macs(case: Case, states: Sequence[LoadedCase]) -> tuple[list[Array], Array]:
 
 def encounters(states: Sequence[LoadedCase], steps: Sequence[Array]) -> Iterator[Note]:
     """Say which modes cross and which couple from one load to the next; steps: MAC from load to load."""
-    for word, found in zip(("cross", "couple"), changes(steps), strict=True):
+    for code, found in zip(("modes-cross", "modes-couple"), changes(steps), strict=True):
         for step in sorted({k for k, _, _ in found}):
             pairs = ", ".join(f"{i + 1} and {j + 1}" for k, i, j in found if k == step)
             before, after = (load_text(states[step + k].load) for k in (0, 1))
-            text = f"modes {pairs} {word} between {before} and {after} (MAC weighted by mass)"
-            yield Note(code=f"modes-{word}", load=states[step + 1].load, text=text)
+            text = f"modes {pairs} {code.partition('-')[2]} between {before} and {after} (MAC weighted by mass)"
+            yield Note(code=code, load=states[step + 1].load, text=text)
 
 
 def compared(

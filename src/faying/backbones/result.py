@@ -199,7 +199,7 @@ def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: QuasiStaticCheck 
     out += pressure_notes(case.structure, preload.pressures, load)
     if line.code != "amplitude":
         end = f"the curve ends at {line.points[-1].level:.3g} m/s2 of {curve.choice.amplitude[1]:.3g}: {line.reason}"
-        out.append(Note(code=f"backbone-{line.code}", load=load, text=end))
+        out.append(Note(code="backbone-ends", load=load, text=end))
     if witness is None:
         text = "the static cycle finds no equilibrium, so that the curve has no static comparison"
         out.append(Note(code="backbone-no-witness", load=load, text=text))

@@ -121,7 +121,7 @@ def identify_model(
     points = _Points.at(model, chosen, test.shape, report)
     answered = int(np.isfinite(points.frequencies).any(axis=(1, 2)).sum())
     if answered < 2 * (size + 1):
-        reasons = "".join(note.text for note in remarks.of_answers(points.reasons, "of the priors", ""))
+        reasons = "".join(note.text for note in remarks.of_answers(points.reasons, "of the priors"))
         raise InputError(
             f"the model has an answer at {answered} of {len(chosen)} points of the priors; an identification of "
             f"{size} parameters needs {2 * (size + 1)}: change the priors. {reasons}".rstrip()
@@ -353,8 +353,8 @@ def _identification(question: _Question, answer: _Answer) -> Identification:
     peak = samples[int(np.argmax(posterior.log_likelihood + np.sum(density, axis=0))), :size]
     notes = (
         *remarks.of_data(size, question.wanted, question.used, question.loads, modes),
-        *remarks.of_answers(answer.points.reasons, "that were evaluated", "no-answer"),
-        *remarks.of_answers(check.points.reasons, "of the posterior", "no-answer-in-posterior"),
+        *remarks.of_answers(answer.points.reasons, "that were evaluated"),
+        *remarks.of_answers(check.points.reasons, "of the posterior"),
         *remarks.of_posterior(names, question.priors, samples),
         *remarks.of_sampling(posterior.correlation),
         *remarks.of_surrogate(check.missed, check.claimed, float(scatter[0]), rough=check.rough),

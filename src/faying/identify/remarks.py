@@ -39,7 +39,7 @@ def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array, modes: int)
         )
 
 
-def of_answers(reasons: Sequence[str], where: str, code: str) -> list[Note]:
+def of_answers(reasons: Sequence[str], where: str) -> list[Note]:
     """Samples without an answer, counted by reason."""
     failed = Counter(filter(None, reasons))
     if not failed:
@@ -47,7 +47,7 @@ def of_answers(reasons: Sequence[str], where: str, code: str) -> list[Note]:
     listed = [f"{reason} ({times})" for reason, times in failed.most_common(SHOWN)]
     rest = f", and {len(failed) - SHOWN} other reasons" if len(failed) > SHOWN else ""
     text = f"{failed.total()} of {len(reasons)} points {where} have no answer: {', '.join(listed)}{rest}."
-    return [Note(code=code, text=text)]
+    return [Note(code="no-answer", text=text)]
 
 
 def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: Array) -> Iterator[Note]:
