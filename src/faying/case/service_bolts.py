@@ -40,8 +40,7 @@ class ServiceBolt:
         """The curve of its fatigue at a mean force [N]."""
         if self.fatigue is None or self.yield_force is None:
             return self.fatigue
-        limit = rolled_after(self.fatigue.endurance, mean / self.yield_force)
-        return replace(self.fatigue, endurance=limit) if limit > 0 else None  # NaN where no class is given
+        return replace(self.fatigue, endurance=rolled_after(self.fatigue.endurance, mean / self.yield_force))
 
     def damage(self, amplitude: float, cycles: float, mean: float) -> float:
         """Damage [-] of cycles at an amplitude of stress [Pa] about a mean force [N]."""
@@ -64,8 +63,8 @@ def service_bolts(structure: BoltedStructure, study: Study | None = None) -> tup
         curve, force = choice.curve, None
         if curve is None and size is not None:
             curve = FatigueCurve.iec(size) if choice.fatigue == "iec" else FatigueCurve.vdi(size)
-            if choice.fatigue == "vdi" and choice.rolled == "after":
-                force = NAN if bolt.fastener is None else bolt.fastener.yield_stress * fatigue_area(fitted)
+            if choice.fatigue == "vdi" and choice.rolled == "after" and bolt.fastener is not None:
+                force = bolt.fastener.yield_stress * fatigue_area(fitted)
         made = ServiceBolt(head_friction=friction, fatigue=curve, yield_force=force, guided_compliance=compliance)
         out.append(made)
     return tuple(out)

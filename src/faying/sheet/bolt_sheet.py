@@ -157,7 +157,8 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
             introduction=found.mean.introduction,
             thermal_loss=low.thermal_loss,
         )
-    damage = None if found is None else found.mean.damage
+    states = () if found is None else (found.least, found.mean, found.greatest)
+    damage = max((one.damage for one in states if one is not None and one.damage is not None), default=None)
     known = {
         one.symbol: one
         for one in (

@@ -165,7 +165,8 @@ STEPS = (
     ),
     _step(
         "R9 D [-]: damage by cycles",
-        "cycles over those to failure at the stress of force and bending, of all load cases (Palmgren, Miner)",
+        "cycles over those to failure at the stress of force and bending, of all load cases (Palmgren, Miner), at that "
+        "of the three preloads where it is greatest",
         lambda D_c: D_c,
         limit="D_1",
         source=f"{GUIDELINE}, section 5.5.3",

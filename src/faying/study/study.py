@@ -257,7 +257,7 @@ class Study(Summary):
         bolts, forces = _bolts(top, materials, joints)
         cases, vibrations = read_loads(top.tables("load")), read_vibrations(top.tables("vibration"))
         names = [bolt.name for bolt in bolts]
-        sheets = read_bolt_sheets(top.tables("bolt_sheet"), names, [load.name for load in cases])
+        sheets = read_bolt_sheets(top.tables("bolt_sheet"), bolts, [load.name for load in cases])
         supports, masses = top.every("support", read_support), top.every("mass", read_mass)
         dowels = read_dowels(top.tables("dowel"), materials)
         modes = top.inner("modes", read_modes) or ModesChoice()

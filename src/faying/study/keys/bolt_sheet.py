@@ -113,18 +113,24 @@ def choice_of(choices: Sequence[BoltSheetChoice], bolt: str) -> BoltSheetChoice:
 
 
 def read_bolt_sheets(
-    tables: Sequence[Table], bolts: Sequence[str], cases: Sequence[str]
+    tables: Sequence[Table], bolts: Sequence[Bolt | SolidBolt], cases: Sequence[str]
 ) -> tuple[BoltSheetChoice, ...]:
     """Read all [[bolt_sheet]]; a fault is noted where two name the same bolt, or two name none.
 
-    bolts, cases: names of the bolts and load cases of the study.
+    bolts: of the study; cases: names of its load cases.
     """
-    found = tuple(BoltSheetChoice.of(table, bolts, cases) for table in tables)
+    found = tuple(BoltSheetChoice.of(table, [bolt.name for bolt in bolts], cases) for table in tables)
     names = [one.bolt for one in found]
     for table, choice in zip(tables, found, strict=True):
         if names.count(choice.bolt) > 1:
             who = "no bolt" if choice.bolt is None else f'the bolt "{choice.bolt}"'
             table.faults.add(f"{table.where}: two tables name {who}; leave one out")
+        unknown = [one.name for one in bolts if one.fastener is None and choice_of(found, one.name) is choice]
+        if choice.rolled == "after" and choice.fatigue == "vdi" and choice.curve is None and unknown:
+            table.faults.add(
+                f'{table.where}.rolled = "after": what the thread bears then hangs on the yield stress of its class, '
+                f'and the bolt "{unknown[0]}" has none; give it grade = "10.9", or leave out rolled'
+            )
     return found
 
 
