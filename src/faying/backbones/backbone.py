@@ -11,7 +11,7 @@ import numpy as np
 
 from faying.backbones.result import BackboneCurve, collected
 from faying.case.alternative import changed, study_with
-from faying.case.case import Case, checked_laws, law_reasons, read_for, surfaces_of
+from faying.case.case import Case, check_laws, law_reasons, read_for, surfaces_of
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.joint.attachments import nearest_node
@@ -255,7 +255,7 @@ def backbones(
     read = read_for(study, surfaces_of(study))
     for law in choice.laws:
         other = study_with(study, _on_all_joints(study, law))
-        checked_laws(other, surfaces_of(other, read))  # raises, before the mesh
+        check_laws(other, surfaces_of(other, read))  # raises, before the mesh
     case = Case.of(study, read=read)
     file = None if out is None else Path(out)
     with CurveStore(file, fingerprint(study, choice, indices)) as store:

@@ -86,11 +86,11 @@ class Case:
         if study.hammer is not None:
             progress.begin("hammer test")
             hammer = Hammer.read(study.hammer)
+        progress.begin("mesh")
+        mesh = checked_mesh(study)
         progress.begin("surface")
         surfaces = surfaces_of(study, read)
-        laws = checked_laws(study, surfaces)
-        progress.begin("mesh")
-        structure = structure_of(study, checked_mesh(study), surfaces, laws)
+        structure = checked_structure(study, mesh, surfaces)
         for _, what, point in named_points(study):
             on_structure(what, point, structure.mesh)
         notes = [Note(code="surface", text=text) for text in fit_warnings(study, surfaces)]
@@ -209,20 +209,13 @@ def part_of(study: Study, face: str) -> str | None:
     return part if part in study.parts else None
 
 
-def checked_laws(study: Study, surfaces: Sequence[Surface]) -> dict[tuple[str, str, str], JointLaw]:
-    """Lay the laws on those joints whose materials are known before there is a mesh; by joint and both parts.
-
-    Raises InputError for laws that a joint cannot use: in seconds, where meshing may take minutes.
-    """
-    out: dict[tuple[str, str, str], JointLaw] = {}
+def check_laws(study: Study, surfaces: Sequence[Surface]) -> None:
+    """Raise InputError for laws that a joint cannot use, where its materials are known before there is a mesh."""
     for joint, surface in zip(study.joints, surfaces, strict=True):
         parts = [part_of(study, face) for face in joint.faces]
         if None not in parts:
             rough, other = (study.materials[study.parts[str(part)]] for part in parts)
-            law = joint_law(joint, study.law_of(joint), surface, rough, other)
-            law.check()
-            out[joint.name, str(parts[0]), str(parts[1])] = law
-    return out
+            joint_law(joint, study.law_of(joint), surface, rough, other).check()
 
 
 def materials_at(study: Study, mesh: Mesh, joint: JointChoice) -> tuple[Material, Material]:
@@ -359,17 +352,12 @@ def _heated(study: Study) -> list[tuple[str, str]]:
     ]
 
 
-def structure_of(
-    study: Study, mesh: Mesh, surfaces: tuple[Surface, ...], laws: Mapping[tuple[str, str, str], JointLaw] | None = None
-) -> Structure:
-    """Return the structure of a study on a mesh, with the surface of each joint; laws: those of `checked_laws`."""
+def structure_of(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Structure:
+    """Return the structure of a study on a mesh, with the surface of each joint."""
     joints: list[FittedJoint] = []
     notes: list[Note] = []
     for joint, surface in zip(study.joints, surfaces, strict=True):
-        parts = (mesh.face_part[joint.faces[0]], mesh.face_part[joint.faces[1]])
-        law = (laws or {}).get((joint.name, *parts)) or joint_law(
-            joint, study.law_of(joint), surface, *materials_at(study, mesh, joint)
-        )
+        law = joint_law(joint, study.law_of(joint), surface, *materials_at(study, mesh, joint))
         interface, closed = interface_of(study, mesh, joint, surface)
         notes += closed
         joints.append(
@@ -415,9 +403,19 @@ def snapped(interface: Interface, snap: float, name: str) -> tuple[Interface, li
 
 def build(study: Study) -> Structure:
     """Return the structure of a study, meshed and with its law on the joints, for work that goes on by hand."""
-    surfaces = surfaces_of(study)
-    laws = checked_laws(study, surfaces)
-    return structure_of(study, checked_mesh(study), surfaces, laws)
+    mesh = checked_mesh(study)
+    return checked_structure(study, mesh, surfaces_of(study))
+
+
+def checked_structure(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Structure:
+    """Return the structure, whose laws its joints can use.
+
+    It asks for a mesh: names that do not fit it are found before a law is solved, which takes longer.
+    """
+    structure = structure_of(study, mesh, surfaces)
+    for joint in structure.joints:
+        joint.law.check()
+    return structure
 
 
 def bare(study: Study) -> Study:

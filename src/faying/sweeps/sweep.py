@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.case.case import checked_laws, surfaces_of
+from faying.case.case import check_laws, surfaces_of
 from faying.errors import FayingError, InputError
 from faying.misuse import checked_call
 from faying.progress import Report, silent
@@ -115,7 +115,7 @@ def _check_laws(grid: Grid) -> None:
     for index in np.flatnonzero((places[first] == 0).all(axis=0))[:MAX_LAWS]:
         point = grid.point(int(index))
         try:
-            checked_laws(point.study, point.surfaces)
+            check_laws(point.study, point.surfaces)
         except FayingError as met:
             fault = fault or met
         else:
