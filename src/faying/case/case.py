@@ -119,7 +119,8 @@ class Case:
     @property
     def read(self) -> Read:
         """Surfaces that have been read for this case, which need not be read again for another law."""
-        return read_for(self.study, self.surfaces)
+        choices = (joint.surface or self.study.surface for joint in self.study.joints)
+        return {choice: one for choice, one in zip(choices, self.surfaces, strict=True) if choice is not None}
 
     def under(self, preload: PreloadState) -> Self:
         """The case with the laws that its joints have under a preload."""
@@ -165,12 +166,6 @@ def mates_notes(laws: Sequence[JointLaw], *, alike: bool = False) -> list[Note]:
     return [Note(code="mates", text=line + hint) for line in lines]
 
 
-def read_for(study: Study, surfaces: Sequence[Surface]) -> Read:
-    """The surfaces of a study's joints by what they were read from."""
-    choices = (joint.surface or study.surface for joint in study.joints)
-    return {choice: one for choice, one in zip(choices, surfaces, strict=True) if choice is not None}
-
-
 def fit_warnings(study: Study, surfaces: Sequence[Surface]) -> tuple[str, ...]:
     """What the fits of D and G warn of, where a law takes them or waves go on with their spectrum."""
     others = [one.law for one in study.alternatives if one.law is not None]
@@ -201,21 +196,6 @@ def surfaces_of(study: Study, read: Read | None = None) -> tuple[Surface, ...]:
 def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Material, other: Material) -> JointLaw:
     """Lay the law on a joint between the rough face's material and the other one, for run, sweep and attach alike."""
     return joint.laid(law.make(surface, rough, other), rough.nu)
-
-
-def part_of(study: Study, face: str) -> str | None:
-    """The part that a face belongs to by its name (part.face) or its selector; None where neither says it."""
-    part = study.geometry.face[face].part if face in study.geometry.face else face.partition(".")[0]
-    return part if part in study.parts else None
-
-
-def check_laws(study: Study, surfaces: Sequence[Surface]) -> None:
-    """Raise InputError for laws that a joint cannot use, where its materials are known before there is a mesh."""
-    for joint, surface in zip(study.joints, surfaces, strict=True):
-        parts = [part_of(study, face) for face in joint.faces]
-        if None not in parts:
-            rough, other = (study.materials[study.parts[str(part)]] for part in parts)
-            joint_law(joint, study.law_of(joint), surface, rough, other).check()
 
 
 def materials_at(study: Study, mesh: Mesh, joint: JointChoice) -> tuple[Material, Material]:
