@@ -168,8 +168,8 @@ def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> 
     moments = np.einsum("...n,pn->...p", np.abs(stress) ** 2, powers * density)
     worst = np.argmax(np.nan_to_num(moments[..., 0]), axis=-1)[..., None]
     out["stress"] = np.sqrt(np.take_along_axis(moments[..., 0], worst, axis=-1)[..., 0]).max(axis=1)
-    every = moments.reshape(len(moments), -1, 4)
-    out["damage"] = np.array([_most_damage(c, one) for c, one in zip(given.base.curves, every, strict=True)])
+    pairs = zip(given.base.curves, moments, strict=True)
+    out["damage"] = np.array([_most_damage(curve, one.reshape(-1, 4)) for curve, one in pairs])
     full = np.concatenate([coordinates, np.ones((1, len(frequencies)))])
     out["part_stress"], out["part_place"] = _worst_stress(given, products(full))
     lines = _coordinates(excited, speeds, dampings, given.lines)
@@ -229,10 +229,10 @@ def _sine(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> di
         "jumps": np.array([float(jump.any()) for _, jump in forced]),
     }
     stress = np.abs(_stresses(given, coordinates, amplitude))
-    flat = stress.reshape(len(stress), -1, len(frequencies))
-    out["stress"] = flat.max(axis=(1, 2)) if flat.shape[1] else np.zeros(len(flat))
+    out["stress"] = stress.max(axis=(1, 2, 3))
+    pairs = zip(given.base.curves, stress, strict=True)
     out["damage"] = np.array(
-        [_swept_damage(curve, some, frequencies) for curve, some in zip(given.base.curves, flat, strict=True)]
+        [_swept_damage(curve, one.reshape(-1, len(frequencies)), frequencies) for curve, one in pairs]
     )
     energy = np.sum(np.abs(excited.speeds[:, None] * coordinates) ** 2, axis=0)
     most = int(np.argmax(energy))  # where the most energy is
