@@ -40,6 +40,9 @@ class PartFile:
             self.known[key] = self.model.frequencies(values, report, allowed)
         return self.known[key]
 
+    def own_errors(self):
+        return self.model.own_errors()
+
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -98,7 +101,9 @@ def main():
         if reasons[0] or not np.isfinite(found).any():  # modes that waves mix have no partner
             print(f"no answer at {truth}: {reasons[0]}", flush=True)
             continue
-        noise = bias * rng.standard_normal(found.shape[2]) + sd * rng.standard_normal(found.shape[1:])
+        both = zip((bias, sd), model.own_errors(), strict=True)
+        bias_of_all, sd_of_all = (np.hypot(one, own) for one, own in both)
+        noise = bias_of_all * rng.standard_normal(found.shape[2]) + sd_of_all * rng.standard_normal(found.shape[1:])
         answer = identify_model(model, found[0] * np.exp(noise), loads, seed=given.seed)
         ranks.append((answer.samples[:, : size + 2] < [*truth, sd, bias]).mean(axis=0))
         print(len(ranks), " ".join(f"{rank:.2f}" for rank in ranks[-1]), flush=True)

@@ -3,11 +3,12 @@
 import numpy as np
 
 from faying.distribution import Distribution
+from faying.identify.identify import Model
 
 LOADS = np.array([4e3, 8e3, 12e3])
 
 
-class Chain:
+class Chain(Model):
     """Contacts of stiffness c (F/10 kN)^n between bodies whose mass has a scale; one parameter does nothing."""
 
     names = ("contact.c", "contact.n", "mass.scale", "unseen")
@@ -50,7 +51,7 @@ class DampedChain(Chain):
         return np.concatenate([f, values[:, 3, None, None] * share], axis=2), reasons
 
 
-class Linear:
+class Linear(Model):
     """ln f linear in normal parameters: ln f[load, mode] = ln 100 + slopes[load, mode] . (x - 1)/0.1."""
 
     def __init__(self, slopes, kind="normal", priors=None):
@@ -67,7 +68,7 @@ class Linear:
         return np.exp(self.logs(values)), [""] * len(values)
 
 
-class Altered:
+class Altered(Model):
     """A model whose frequencies, reasons or logs a function changes."""
 
     def __init__(self, model, change):

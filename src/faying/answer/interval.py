@@ -8,7 +8,7 @@ import numpy as np
 
 from faying.case.case import Case
 from faying.case.changed import ChangedCase, can_change, frequencies_of
-from faying.case.mesh_error import MeshError
+from faying.case.mesh_error import MeshError, elastic_modes
 from faying.case.part_tests import KnownParts
 from faying.case.scatter import (
     LEVELS,
@@ -222,12 +222,6 @@ def intervals(
     lost = [*_incomplete({"draws of waves": of_draws, of_about: of_medians[:1], **pairs})]
     notes = [*lost, *of_parts, *draws.notes(case), *law_notes(case, known)]
     return band, _combined(case, known, states, mesh, parts, of_joints), notes
-
-
-def elastic_modes(case: Case, state: LoadedCase) -> tuple[Array, Array]:
-    """Frequencies [Hz] (m,) and shapes (n, m) of the modes of a state that have an interval."""
-    elastic = slice(case.rigid_count, case.rigid_count + len(state.damped.frequencies))
-    return state.modes.frequencies[elastic], state.modes.shapes[:, elastic]
 
 
 def _laws(case: Case, known: Known, factor: int = 1, ratio: int = 1) -> list[JointLaw]:

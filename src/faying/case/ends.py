@@ -3,13 +3,9 @@
 from dataclasses import replace
 from typing import Literal
 
-import numpy as np
-
 from faying.case.case import Case
 from faying.case.engine import Engine
-from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
-from faying.joint.springs import Springs
 from faying.numerics.modes import Modes
 from faying.typing import Array
 
@@ -33,13 +29,7 @@ def ends_of(case: Case, preload: PreloadState, engine: Engine, modes: Modes) -> 
         out["scan"] = at("low"), at("high")
     if case.study.modes.intervals and not any(joint.per_node for joint in joints):
         springs = case.structure.springs(preload.pressures)
-        halves = ([half_of(one, which) for one in springs] for which in (0, 1))
+        halves = ([one.half(which) for one in springs] for which in (0, 1))
         first, second = (engine.frequencies(half, modes, one_way=False) for half in halves)
         out["contact"] = first, second
     return out
-
-
-def half_of(springs: Springs[Interface], which: int) -> Springs[Interface]:
-    """Every second point of a joint, from the first or from the second one, with twice its stiffness."""
-    twice = 2.0 * (np.arange(len(springs.k_n)) % 2 == which)
-    return replace(springs, k_n=twice * springs.k_n, k_t=twice * springs.k_t)

@@ -6,13 +6,15 @@ of the joints, with twice their area, say how much hangs on single points.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from faying.case.case import Case
-from faying.case.scatter import MESH_NOTED
+from faying.case.scatter import MESH_NOTED, SCORE
 from faying.case.solve import LoadedCase
 from faying.fe.surplus import Surplus
+from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.typing import Array, Mask
@@ -35,10 +37,46 @@ class MeshError:
     parts: Array
     contact: Array
 
+    @classmethod
+    def of(
+        cls,
+        structure: Structure,
+        modes: Sequence[tuple[Array, Array]],
+        springs: Sequence[Sequence[Springs[Any]]],
+        halves: Sequence[Sequence[Array] | None],
+    ) -> "MeshError | None":
+        """From what is known under each load; None where the estimate does not know the elements.
+
+        Args:
+            structure: with its mesh.
+            modes: elastic modes, their frequencies [Hz] (m,) and mass-normalised shapes (n, m).
+            springs: of each joint.
+            halves: frequencies [Hz] (m,) with each half of the points of the joints; None where they are not known.
+        """
+        surplus = Surplus.of(structure.mesh, structure.materials, loaded_nodes(structure))
+        if surplus is None:
+            return None
+        parts, contact = [], []
+        for (f, shapes), of_load, both in zip(modes, springs, halves, strict=True):
+            pairs = zip(structure.joints, of_load, strict=True)
+            joints = [(joint.interface, one.k_n, one.k_t) for joint, one in pairs if not joint.per_node]
+            parts.append(surplus.error(shapes, (2 * np.pi * f) ** 2, joints) / 2)
+            mean = np.zeros(len(f)) if both is None else np.log(np.stack(both) / f).mean(axis=0)
+            contact.append(OF_HALVES * np.abs(mean))
+        return cls(parts=np.stack(parts), contact=np.stack(contact))
+
     @property
     def total(self) -> Array:
         """Estimated error of each frequency [-] (loads, m)."""
         return self.parts + self.contact
+
+    @property
+    def sd(self) -> tuple[Array, Array]:
+        """Standard deviations of ln f: of what a mode has at all loads (m,), and of each load by itself (m,).
+
+        The parts have one mesh at all loads; at each load other points of the joints touch.
+        """
+        return self.parts.mean(axis=0) / SCORE, np.sqrt((self.contact**2).mean(axis=0)) / SCORE
 
     @property
     def middle(self) -> Array:
@@ -53,22 +91,15 @@ class MeshError:
 
 def mesh_error(case: Case, states: Sequence[LoadedCase]) -> MeshError | None:
     """The error of the mesh in every frequency of every state; None where the estimate does not know its elements."""
-    structure = case.structure
-    surplus = Surplus.of(structure.mesh, structure.materials, loaded_nodes(structure))
-    if surplus is None:
-        return None
-    parts, contact = [], []
-    for state in states:
-        count, frequencies = len(state.damped.frequencies), state.damped.frequencies
-        shapes = state.modes.shapes[:, case.rigid_count :][:, :count]
-        speeds = 2 * np.pi * state.modes.frequencies[case.rigid_count :][:count]
-        pairs = zip(structure.joints, state.springs, strict=True)
-        joints = [(joint.interface, one.k_n, one.k_t) for joint, one in pairs if not joint.per_node]
-        parts.append(surplus.error(shapes, speeds**2, joints) / 2)
-        halves = (state.ends or {}).get("contact")
-        mean = np.zeros(count) if halves is None else np.log(np.stack(halves) / frequencies).mean(axis=0)
-        contact.append(OF_HALVES * np.abs(mean))
-    return MeshError(parts=np.stack(parts), contact=np.stack(contact))
+    halves = [(state.ends or {}).get("contact") for state in states]
+    modes = [elastic_modes(case, state) for state in states]
+    return MeshError.of(case.structure, modes, [state.springs for state in states], halves)
+
+
+def elastic_modes(case: Case, state: LoadedCase) -> tuple[Array, Array]:
+    """Frequencies [Hz] (m,) and shapes (n, m) of the modes of a state that have an interval."""
+    elastic = slice(case.rigid_count, case.rigid_count + len(state.damped.frequencies))
+    return state.modes.frequencies[elastic], state.modes.shapes[:, elastic]
 
 
 def loaded_nodes(structure: Structure) -> Mask:

@@ -63,6 +63,13 @@ class Model(Protocol):
             has one.
         """
 
+    def own_errors(self) -> tuple[Array, Array]:
+        """Standard deviations of what the model itself is off in ln f, once it was asked for frequencies (mode,).
+
+        Of one offset of each mode at all loads, and of each frequency by itself; nothing where not overridden.
+        """
+        return np.zeros(1), np.zeros(1)
+
 
 def identify_model(
     model: Model,
@@ -227,9 +234,16 @@ class _Question:
         return int(2 * self.test.shape[1] // (len(self.priors) - self.size))
 
     def noise(self, values: Array) -> tuple[Array, Array]:
-        """Relative sd of the scatter and of the offsets (n, column) at values of all parameters (n, d + 2 or 4)."""
-        scatter, discrepancy = values[:, self.size :: 2], values[:, self.size + 1 :: 2]
-        return np.repeat(scatter, self.modes, axis=1), np.repeat(discrepancy, self.modes, axis=1)
+        """Relative sd of the scatter and of the offsets (n, column) at values of all parameters (n, d + 2 or 4).
+
+        With what the model itself may be off.
+        """
+        both = values[:, self.size :: 2], values[:, self.size + 1 :: 2]
+        scatter, discrepancy = (np.repeat(sd, self.modes, axis=1) for sd in both)
+        offset, own = self.model.own_errors()
+        for sd, more in ((scatter, own), (discrepancy, offset)):  # of loss factors nothing is known
+            sd[:, : self.modes] = np.hypot(sd[:, : self.modes], more)
+        return scatter, discrepancy
 
     def offsets(self, emulator: Emulator, values: Array) -> Offsets:
         """What the test says at values of all parameters (n, d + 2 or 4)."""

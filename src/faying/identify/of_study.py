@@ -12,7 +12,7 @@ from faying.case.part_tests import KnownParts
 from faying.case.scatter import of_parts
 from faying.errors import InputError
 from faying.identify.identification import Identification, mixed
-from faying.identify.identify import identify_model
+from faying.identify.identify import Model, identify_model
 from faying.identify.identity import paired, paired_modes
 from faying.identify.noise import DISCREPANCY_SD, LOSS_DISCREPANCY_SD, LOSS_TEST_SD, TEST_SD, Losses
 from faying.identify.predict import MIN_SAMPLES, check, check_seed, cut_notes, of_bases
@@ -34,17 +34,20 @@ from faying.typing import Array, Index
 COUNT = 1000  # samples of the posterior
 
 
-class StudyModel:
+class StudyModel(Model):
     """A study in its reduced bases, under one of its laws, as an identification asks for it.
 
-    Tests of parts move its frequencies; what they leave open is less than the discrepancy that is identified.
+    Tests of parts move its frequencies; what they leave open is less than the discrepancy that is identified. The
+    error of the mesh moves them too, and what is not known of it counts beside scatter and discrepancy.
     """
 
     def __init__(
         self, ensemble: Ensemble, reduced: Reduced, stage: "_Stage", law: int = 0, parts: KnownParts | None = None
     ) -> None:
         self.ensemble, self.reduced, self.stage, self.law = ensemble, reduced, stage, law
-        self.factors = 1.0 if parts is None else np.exp(parts.left()[0])  # on the frequencies (load, m)
+        self.mesh = reduced.mesh_error(ensemble, law)
+        moved = np.zeros(1) if parts is None else parts.left()[0]
+        self.factors = np.exp(moved if self.mesh is None else moved + self.mesh.middle)  # on the frequencies (load, m)
         inputs = ensemble.inputs
         columns = [column for column in inputs.columns if column.key != MODEL]
         self.names = tuple(column.key for column in columns)
@@ -78,6 +81,13 @@ class StudyModel:
         given = ["named"] if test.losses is None else ["named", "named_loss"]
         found = [paired(rows[name], self.modes) for name in given]
         return np.concatenate(found, axis=2), [str(reason) for reason in rows["reasons"]]
+
+    def own_errors(self) -> tuple[Array, Array]:
+        """See `Model`."""
+        if self.mesh is None or self.modes is None:
+            return super().own_errors()
+        offset, scatter = (np.where(self.modes < 0, 0.0, sd[self.modes]) for sd in self.mesh.sd)
+        return offset, scatter
 
 
 class _Stage:

@@ -8,9 +8,10 @@ from typing import Any, overload
 import numpy as np
 
 from faying.case.case import checked_mesh, mates_notes, structure_of, surfaces_of
+from faying.case.mesh_error import MeshError
 from faying.case.part_tests import KnownParts
 from faying.case.provenance import provenance
-from faying.case.scatter import discrepancy, of_number, of_parts, stated, with_assumed
+from faying.case.scatter import SCORE, discrepancy, of_number, of_parts, stated, with_assumed
 from faying.errors import InputError
 from faying.identify.assemblies import Assemblies
 from faying.identify.identity import paired, paired_modes
@@ -125,7 +126,7 @@ def predict(
         follower = None if choice is None else Follower.of(ensemble, choice, reduced)
         rows = reduced.rows(ensemble)
         parts = KnownParts.of(given, structure, reduced.modes(ensemble)) if study.part_tests else None
-        found = predicted(study, ensemble, reduced, rows, seed, parts)
+        found = predicted(study, ensemble, reduced, rows, seed, parts, reduced.mesh_error(ensemble))
         if follower is not None:
             found = found.with_backbones(follower.follow(backbones, reduced))
         if file is not None:
@@ -153,20 +154,28 @@ def check(study: Study, samples: int) -> None:
 
 
 def predicted(
-    study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, seed: int, parts: KnownParts | None
+    study: Study,
+    ensemble: Ensemble,
+    reduced: Reduced,
+    rows: Rows,
+    seed: int,
+    parts: KnownParts | None,
+    mesh: MeshError | None,
 ) -> Prediction:
     """Put the rows of all samples together, with what there is to say of them.
 
-    parts: those with tests of their own, which move every sample alike.
+    parts: those with tests of their own, which move every sample alike; mesh: its error, where it is known.
     """
     reasons = [str(reason) for reason in rows["reasons"]]
     if all(reasons):
         raise InputError(f"none of {len(reasons)} samples has an answer; the first: {reasons[0]}")
-    if parts is None:
-        lacking = np.full(rows["frequencies"].shape[1:], discrepancy(study.uncertain or UncertainChoice()))
-    else:
+    moved = np.zeros(rows["frequencies"].shape[1:])
+    lacking = np.full(moved.shape, discrepancy(study.uncertain or UncertainChoice()))
+    if parts is not None:
         moved, lacking = parts.left()
-        rows = {**rows, **{name: rows[name] * np.exp(moved) for name in ("frequencies", "named")}}
+    if mesh is not None:
+        moved, lacking = moved + mesh.middle, np.hypot(lacking, mesh.total / SCORE)
+    rows = {**rows, **{name: rows[name] * np.exp(moved) for name in ("frequencies", "named")}}
     tested: dict[str, Any] = {}
     if study.test is not None:
         test = np.array(study.test.frequencies)
@@ -193,10 +202,10 @@ def predicted(
     )
     mates = mates_notes(reduced.laws(ensemble))
     of_parts = () if parts is None else parts.notes()
-    return found.with_notes([*mates, *of_parts, *_notes(study, found), *of_bases(reduced.errors(ensemble, rows))])
+    return found.with_notes([*mates, *of_parts, *_notes(study, found, mesh), *of_bases(reduced.errors(ensemble, rows))])
 
 
-def _notes(study: Study, found: Prediction) -> Iterator[Note]:
+def _notes(study: Study, found: Prediction, mesh: MeshError | None) -> Iterator[Note]:
     """What a reader of the intervals ought to know."""
     yield from cut_notes(found.inputs.columns)
     choice, known = study.uncertain or UncertainChoice(), stated(study.uncertain)
@@ -231,10 +240,12 @@ def _notes(study: Study, found: Prediction) -> Iterator[Note]:
             yield Note(code="test-modes", text=text)
     if not choice.models:
         low, high = (f"{end:.2%}" for end in (found.discrepancy.min(), found.discrepancy.max()))
+        of_mesh = "; not the error of the mesh, which is estimated for tetrahedra of one order alone"
+        if mesh is not None:
+            of_mesh = f" and for the error of the mesh, of which {mesh.parts.max():.2%} or less is taken off"
         text = (
             f"the intervals include what is listed above, and {low if low == high else f'{low} to {high}'} of each "
-            "frequency for what else the parts are (uncertain.structure, discrepancy, tests of parts); not the error "
-            "of the mesh"
+            f"frequency for what else the parts are (uncertain.structure, discrepancy, tests of parts){of_mesh}"
         )
         yield Note(code="interval", text=text)
 

@@ -1,8 +1,8 @@
 """The springs of a joint at one preload, on any description of how its faces move."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from dataclasses import dataclass, replace
+from typing import Any, Generic, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -46,6 +46,11 @@ class Springs(Generic[Motion]):
     loss_n: Array
     loss_t: Array
 
+    def half(self, which: int) -> Self:
+        """Every second point, from the first (0) or from the second one (1), with twice its stiffness."""
+        twice = 2.0 * (np.arange(len(self.k_n)) % 2 == which)
+        return replace(self, k_n=twice * self.k_n, k_t=twice * self.k_t)
+
     def stiffness(self) -> Any:
         """Stiffness matrix [N/m]."""
         return self.interface.springs(self.k_n, self.k_t)
@@ -53,6 +58,10 @@ class Springs(Generic[Motion]):
     def loss(self) -> Any:
         """Imaginary part of the stiffness matrix [N/m]: hysteretic loss."""
         return self.interface.springs(self.k_n * self.loss_n, self.k_t * self.loss_t)
+
+    def lossless(self) -> Self:
+        """The same springs without loss."""
+        return replace(self, loss_n=np.zeros_like(self.loss_n), loss_t=np.zeros_like(self.loss_t))
 
     @property
     def lossy(self) -> bool:

@@ -25,6 +25,7 @@ from faying.joint.structure import Structure
 from faying.joint.support_check import check_motions, checked_preload
 from faying.numerics.basis import Basis
 from faying.numerics.constraint import constrain
+from faying.numerics.follow import follow
 from faying.numerics.modes import lowest_modes
 from faying.numerics.product import product
 from faying.numerics.shifted import Shifted
@@ -347,6 +348,28 @@ class Reduction:
         corrected = [law.pressure(-gap - by)[0] for law, gap, by in zip(laws, found.openings, moved, strict=True)]
         old, new = (self.model.modes(self.model.springs(laws, p))[0].real for p in (found.pressures, corrected))
         return float(modal.max() + np.abs(new / old - 1)[:count].max()) / 2  # of a square of a frequency
+
+    def with_halves(self, laws: Sequence[JointLaw], pressures: Sequence[Array]) -> tuple[Array, Array, list[Array]]:
+        """Modes of a variant without loss, and their frequencies with each half of the points of the joints.
+
+        The basis for vibration grows by what the halves need. Returns frequencies [Hz] (m,), mass-normalised shapes
+        (n, m) and the frequencies of each half (m,), each of the mode whose shape it has.
+        """
+
+        def springs() -> list[list[Springs[ReducedMotion]]]:
+            whole = [s.lossless() for s in self.model.springs(laws, pressures)]
+            return [whole, *([s.half(which) for s in whole] for which in (0, 1))]
+
+        whole, *halves = springs()
+        values, shapes, _ = self.model.modes(whole)
+        left = [self.modal_residual(half, values, shapes) / np.sqrt(values.real) for half in halves]
+        self.dynamic.add(self.factor.solve(np.asfortranarray(np.concatenate(left, axis=1))))
+        self.refresh()
+        (f, turned), *changed = (
+            (np.sqrt(values.real) / (2 * np.pi), shapes.real) for values, shapes, _ in map(self.model.modes, springs())
+        )
+        mass = self.model.matrices[2]
+        return f, self.dynamic.vectors @ turned, [new[follow(turned, other, mass, f)] for new, other in changed]
 
     def at(self, variant: Gapped) -> ReducedModel:
         """The bases as they are, with the gaps and scales of a variant; `model` has them from then on."""

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from faying.case.mesh_error import MeshError
 from faying.errors import FayingError
 from faying.identify.identity import by_name, named
 from faying.identify.sampling.ensemble import Ensemble
@@ -288,6 +289,21 @@ class Reduced:
         """Modes of the medians under each load: frequencies [Hz] (m,) and real, mass-normalised shapes (n, m)."""
         basis, mass = self._whole().dynamic.vectors, self.model.matrices[2]
         return [(one.frequencies, basis @ _real(one.shapes, mass)) for one in self._evaluator(ensemble, law).median]
+
+    def mesh_error(self, ensemble: Ensemble, law: int = 0) -> MeshError | None:
+        """The error of the mesh in the modes of the medians; None where they, or the elements, do not tell it."""
+        self.report("error of the mesh", 0, 0)
+        try:
+            _, found, laws = self._evaluator(ensemble, law).solved(law - ensemble.training, drawn=False)
+        except FayingError:
+            return None
+        structure, bases = self.trainer.structure.with_joints(laws=laws), self._whole().branch()
+        index, count = law * ensemble.loads, self.trainer.study.modes.count
+        bases.model = replace(self.trainer.builder.model_at(bases.model, index), count=count)
+        pressures = [one.preload.pressures for one in found]
+        modes = [bases.with_halves(laws, p) for p in pressures]
+        springs = [structure.springs(p) for p in pressures]
+        return MeshError.of(structure, [one[:2] for one in modes], springs, [one[2] for one in modes])
 
     def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, allowed: float = LIMIT) -> Rows:
         """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
