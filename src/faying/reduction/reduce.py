@@ -365,9 +365,8 @@ class Reduction:
         left = [self.modal_residual(half, values, shapes) / np.sqrt(values.real) for half in halves]
         self.dynamic.add(self.factor.solve(np.asfortranarray(np.concatenate(left, axis=1))))
         self.refresh()
-        (f, turned), *changed = (
-            (np.sqrt(values.real) / (2 * np.pi), shapes.real) for values, shapes, _ in map(self.model.modes, springs())
-        )
+        found = map(self.model.modes, springs())
+        (f, turned), *changed = [(np.sqrt(values.real) / (2 * np.pi), shapes.real) for values, shapes, _ in found]
         mass = self.model.matrices[2]
         return f, self.dynamic.vectors @ turned, [new[follow(turned, other, mass, f)] for new, other in changed]
 

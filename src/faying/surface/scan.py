@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self, cast, final
 
-import numpy as np
-
 from faying.checks import flag, shown, whole
 from faying.errors import FayingError, InputError
 from faying.style import Summary
 from faying.surface.areal import ArealParameters
 from faying.surface.figure import overview_of
-from faying.surface.form import filled, find_spikes, levelled, prepared
+from faying.surface.form import filled, levelled, prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.fractal_fit import FractalFit
 from faying.surface.heights import AreaHeights, LineHeights
@@ -102,15 +100,6 @@ class Heights(Summary):
         Missing points stay missing. Raises InputError for a degree outside 0 to 8 and for too few known points.
         """
         return cast("Self", levelled(self._self, degree))
-
-    def without_spikes(self) -> Self:
-        """Return the heights with single outlying points marked as missing; judged on levelled heights.
-
-        Raises InputError as `levelled`.
-        """
-        spikes = find_spikes(levelled(self._self))
-        note = f"{int(spikes.sum())} spikes taken out"
-        return cast("Self", self._self.with_heights(np.where(spikes, np.nan, self._self.heights), note))
 
     def filled(self) -> Self:
         """Return the heights with missing points filled in smoothly from their neighbours; InputError without any."""

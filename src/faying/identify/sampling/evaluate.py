@@ -298,11 +298,10 @@ class Reduced:
         except FayingError:
             return None
         structure, bases = self.trainer.structure.with_joints(laws=laws), self._whole().branch()
-        index, count = law * ensemble.loads, self.trainer.study.modes.count
-        bases.model = replace(self.trainer.builder.model_at(bases.model, index), count=count)
-        pressures = [one.preload.pressures for one in found]
-        modes = [bases.with_halves(laws, p) for p in pressures]
-        springs = [structure.springs(p) for p in pressures]
+        model = self.trainer.builder.model_at(bases.model, law * ensemble.loads)
+        bases.model = replace(model, count=self.model.count)
+        modes = [bases.with_halves(laws, one.preload.pressures) for one in found]
+        springs = [structure.springs(one.preload.pressures) for one in found]
         return MeshError.of(structure, [one[:2] for one in modes], springs, [one[2] for one in modes])
 
     def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, allowed: float = LIMIT) -> Rows:
