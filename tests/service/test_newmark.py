@@ -1,8 +1,8 @@
 """Random vibration against integration in time of the reduced structure, its sliders opening, closing and slipping.
 
-Two structures at three levels each. The noise ends at twice the first mode, so that one mode leads. A linear mode under
-the same noise, with the damping and the frequency that are tested, takes out most of what the sample is off by: 1 % of
-the rms is left.
+Three structures at three levels each, the last with two joints. The noise ends at twice the first mode, so that one
+mode leads. A linear mode under the same noise, with the damping and the frequency that are tested, takes out most of
+what the sample is off by: 1 % of the rms is left.
 """
 
 import numpy as np
@@ -28,12 +28,15 @@ LAW = JointLaw(model=Given(k_n=lambda p: ROOT * np.sqrt(p), k_t=lambda p: 0.8 * 
 COPIES, DECAYS = 64, 10  # realisations, and how many times each forgets its energy
 
 
-def built(mesh, faces, seats, support, friction):
-    joint = FittedJoint(name="j", faces=faces, interface=join(mesh, *faces), law=LAW, friction=friction)
+def built(mesh, pairs, seats, support, friction):
+    joints = tuple(
+        FittedJoint(name=f"j{k}", faces=faces, interface=join(mesh, *faces), law=LAW, friction=friction)
+        for k, faces in enumerate(pairs)
+    )
     return Structure(
         mesh=mesh,
         materials=dict.fromkeys(mesh.parts, SIMPLE),
-        joints=(joint,),
+        joints=joints,
         bolts=(faying.Bolt("b", seats),),
         supports=[Support(face=support)],
     ).solve(preload=3e3, modes=4)
@@ -41,11 +44,16 @@ def built(mesh, faces, seats, support, friction):
 
 @pytest.fixture(scope="module")
 def states():
-    one = row([0.03] * 2, [1, 1], kinds=("hex20",) * 2, sections=((1, 1),) * 2, width=0.02, height=0.014)
+    one, two = (
+        row([length] * n, [1] * n, kinds=("hex20",) * n, sections=((1, 1),) * n, width=0.02, height=0.014)
+        for n, length in ((2, 0.03), (3, 0.01))
+    )
+    plates = stacked(counts=(2, 1, 1))
     return {
-        "beam": built(one, ("p0.right", "p1.left"), ("p0.left", "p1.right"), "p0.left", 0.1),
-        "plates": built(
-            stacked(counts=(2, 1, 1)), ("low.top", "high.bottom"), ("low.bottom", "high.top"), "low.left", 0.2
+        "beam": built(one, [("p0.right", "p1.left")], ("p0.left", "p1.right"), "p0.left", 0.1),
+        "plates": built(plates, [("low.top", "high.bottom")], ("low.bottom", "high.top"), "low.left", 0.2),
+        "stack": built(
+            two, [("p0.right", "p1.left"), ("p1.right", "p2.left")], ("p0.left", "p2.right"), "p0.left", 0.1
         ),
     }
 
@@ -59,6 +67,9 @@ def states():
         ("plates", 2e-5, 0.05),
         ("plates", 3e-4, 0.05),
         ("plates", 3.5e-3, 0.05),
+        ("stack", 1.0, 0.05),
+        ("stack", 3.0, 0.05),
+        ("stack", 10.0, 0.05),
     ],
 )
 def test_the_leading_mode_has_the_rms_and_the_damping_of_integration_in_time(states, name, density, rms):
