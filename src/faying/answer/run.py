@@ -84,7 +84,7 @@ def run(
     progress.begin("intervals and bolts")
     mesh = mesh_error(case, states) if study.modes.intervals else None
     band, interval, more = intervals(case, states, mesh)
-    more += mesh_notes(case, mesh) if study.modes.intervals else []
+    more += mesh_notes(study, mesh) if study.modes.intervals else []
     shapes = shapes_of(case, states)
     bolts, bolt_notes = _bolts(case, states, shapes)
     states = [released(state) for state in states]

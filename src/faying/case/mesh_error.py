@@ -17,6 +17,7 @@ from faying.fe.surplus import Surplus
 from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.notes import Note
+from faying.study.study import Study
 from faying.typing import Array, Mask
 from faying.units import show
 
@@ -118,7 +119,7 @@ def loaded_nodes(structure: Structure) -> Mask:
     return out
 
 
-def mesh_notes(case: Case, found: MeshError | None) -> list[Note]:
+def mesh_notes(study: Study, found: MeshError | None) -> list[Note]:
     """A note on an error of the mesh that is large, with the size of elements to take; on one that is not known."""
     if found is None:
         text = "the error of the mesh is not in the intervals: it is estimated for tetrahedra of one order alone"
@@ -131,7 +132,7 @@ def mesh_notes(case: Case, found: MeshError | None) -> list[Note]:
     if 1 < len(over) == len(worst):
         which = f"all {len(over)} modes"
     text = f"the mesh is coarse: {which} may be off by up to {100 * worst.max():.2g} %; "
-    geometry = case.study.geometry
+    geometry = study.geometry
     if geometry.step is None:
         text += "mesh finer in the program that the mesh comes from"
     else:

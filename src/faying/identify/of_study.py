@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from faying.case.case import mates_notes
+from faying.case.mesh_error import mesh_notes
 from faying.case.part_tests import KnownParts
 from faying.case.scatter import of_parts
 from faying.errors import InputError
@@ -207,7 +208,7 @@ def _identified(
         )
         bases = [] if model.last is None else of_bases(reduced.errors(*model.last))
         mates = [*mates_notes(reduced.laws(ensemble)), *(() if parts is None else parts.notes())]
-        found.append(replace(one, notes=(*mates, *cut, *one.notes, *bases)))
+        found.append(replace(one, notes=(*mates, *cut, *one.notes, *bases, *mesh_notes(study, model.mesh))))
     if not choice.models:
         return found[0]
     return mixed(dict(zip([name for name, _ in choice.models], found, strict=True)), dict(choice.models), seed=seed)

@@ -8,7 +8,7 @@ from typing import Any, overload
 import numpy as np
 
 from faying.case.case import checked_mesh, mates_notes, structure_of, surfaces_of
-from faying.case.mesh_error import MeshError
+from faying.case.mesh_error import MeshError, mesh_notes
 from faying.case.part_tests import KnownParts
 from faying.case.provenance import provenance
 from faying.case.scatter import SCORE, discrepancy, of_number, of_parts, stated, with_assumed
@@ -240,14 +240,13 @@ def _notes(study: Study, found: Prediction, mesh: MeshError | None) -> Iterator[
             yield Note(code="test-modes", text=text)
     if not choice.models:
         low, high = (f"{end:.2%}" for end in (found.discrepancy.min(), found.discrepancy.max()))
-        of_mesh = "; not the error of the mesh, which is estimated for tetrahedra of one order alone"
-        if mesh is not None:
-            of_mesh = f" and for the error of the mesh, of which {mesh.parts.max():.2%} or less is taken off"
+        of_mesh = "" if mesh is None else f", and for the error of the mesh, {mesh.parts.max():.2%} or less taken off"
         text = (
             f"the intervals include what is listed above, and {low if low == high else f'{low} to {high}'} of each "
             f"frequency for what else the parts are (uncertain.structure, discrepancy, tests of parts){of_mesh}"
         )
         yield Note(code="interval", text=text)
+    yield from mesh_notes(study, mesh)
 
 
 def of_bases(errors: Array) -> list[Note]:

@@ -298,8 +298,7 @@ class Reduced:
         except FayingError:
             return None
         structure, bases = self.trainer.structure.with_joints(laws=laws), self._whole().branch()
-        model = self.trainer.builder.model_at(bases.model, law * ensemble.loads)
-        bases.model = replace(model, count=self.model.count)
+        bases.model = self.trainer.builder.model_at(replace(bases.model, count=self.model.count), law * ensemble.loads)
         modes = [bases.with_halves(laws, one.preload.pressures) for one in found]
         springs = [structure.springs(one.preload.pressures) for one in found]
         return MeshError.of(structure, [one[:2] for one in modes], springs, [one[2] for one in modes])
