@@ -47,6 +47,24 @@ def chain():
 # -- closed forms
 
 
+@pytest.mark.parametrize(("offset", "own"), [(0.0, 0.0), (0.02, 0.0), (0.0, 0.02)])
+def test_errors_of_the_model_itself_count_with_discrepancy_and_scatter(offset, own):
+    """ln f = s z in three modes at two loads, z standard normal: 1 + 3 s^2 times the sum of the inverse covariance."""
+    slope, scatter, discrepancy = 0.02, 0.004, 0.006
+
+    class Meshed(Linear):
+        def own_errors(self):
+            return np.full(3, offset), np.full(3, own)
+
+    model = Meshed(slope * np.ones((2, 3, 1)))
+    found = identify_model(
+        model, np.full((2, 3), 100.0), LOADS[:2], count=1000, test_sd=fixed(scatter), discrepancy=fixed(discrepancy)
+    )
+    each, common = scatter**2 + own**2, discrepancy**2 + offset**2
+    exact = (1 + 3 * slope**2 * 2 / (each + 2 * common)) ** -0.5
+    assert found.posterior_contraction[0] == pytest.approx(exact, rel=0.07)  # 1000 draws: three times 2.3 %
+
+
 def test_offsets_are_those_of_the_whole_covariance():
     rng = np.random.default_rng(0)
     modes = np.array([0, 2, 0, 2, 2])
