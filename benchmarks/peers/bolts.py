@@ -1,7 +1,8 @@
-"""Areas and stiffness of metric bolts."""
+"""Areas and stiffness of metric bolts, and their fatigue under random stress."""
 
 import numpy as np
 
+from faying.bolt.fatigue import FatigueCurve, dirlik, narrow_band
 from faying.bolt.threads import Thread
 from faying.bolt.vdi2230 import bolt_sections
 from peers.peer import ask
@@ -31,6 +32,29 @@ def bolts(python):
     return [worst(f"{what}, {span}, number", a, b, bound=4e-6, unit=u) for what, a, b, u in quantities]
 
 
+def fatigue(python):
+    """Two resonances, one of them, and a plateau, by curves of one slope."""
+    f = np.linspace(1.0, 2000.0, 20001)
+    hump, other = np.exp(-(((f - 300) / 60) ** 2)), np.exp(-(((f - 900) / 150) ** 2))
+    densities = 1e12 * np.stack([hump + 0.4 * other, hump, np.where(f < 500, 1.0, 1e-3)])
+    curves = [FatigueCurve(endurance=20e6, slope=slope, slope_below=slope) for slope in (3.0, 5.0, 9.0)]
+    theirs = ask(
+        python,
+        "fatigue.py",
+        frequencies=f,
+        densities=densities,
+        slopes=[one.slope for one in curves],
+        constants=[one.knee * one.endurance**one.slope for one in curves],
+    )
+    moments = [np.array([np.trapezoid(one * f**n, f) for n in (0, 1, 2, 4)]) for one in densities]
+    ours = {
+        "dirlik": [dirlik(curve, m) for m in moments for curve in curves],
+        "narrow": [narrow_band(curve, np.sqrt(m[0]), np.sqrt(m[2] / m[0])) for m in moments for curve in curves],
+    }
+    names = {"dirlik": "damage by Dirlik, three spectra, three slopes, number", "narrow": "the same of a narrow band"}
+    return [worst(names[key], ours[key], theirs[key], bound=1e-9, unit="1/s") for key in names]
+
+
 PROBLEMS = [
     Problem(
         name="metric bolts",
@@ -39,5 +63,12 @@ PROBLEMS = [
         bound="The same formulas of ISO 898-1 and VDI 2230; Faying has their printed factors 0.64952 and 1.22687, "
         "which are 5e-6 of the pitch off at most, or 1e-6 of the diameter and 2e-6 of its square; twice that.",
         solve=bolts,
+    ),
+    Problem(
+        name="random stress",
+        peer="FLife",
+        seconds=2,
+        bound="The same closed forms of the same moments; Faying's rule for curves of two slopes is exact for one.",
+        solve=fatigue,
     ),
 ]

@@ -73,6 +73,7 @@ PEERS = {
         Peer(name="surfalize", licence="GPL-3.0", get="pip install surfalize", module="surfalize", package="surfalize"),
         Peer(name="pyuff", licence="MIT", get="pip install pyuff", module="pyuff", package="pyuff"),
         Peer(name="pyFlange", licence="GPL-3.0", get="pip install pyFlange", module="pyflange", package="pyFlange"),
+        Peer(name="FLife", licence="MIT", get="pip install FLife", module="FLife", package="FLife"),
         Peer(
             name="tmdsimpy",
             licence="MIT",

@@ -61,6 +61,12 @@ def test_frequencies_of_a_universal_file_have_six_digits(capsys, there):
     assert table["elastic frequency 2"]["other"] == "130.03 Hz"  # of the printed ones
 
 
+def test_fatigue_under_random_stress_is_that_of_flife(capsys, there):
+    if "FLife" not in there:
+        pytest.skip(f"not installed: FLife: {PEERS['FLife'].get}; FAYING_PEERS names another interpreter")
+    assert [row["verdict"] for row in rows(capsys, "FLife")] == ["within", "within"]
+
+
 @pytest.mark.parametrize("peer", ["SurfaceTopography", "surfalize"])
 def test_the_height_of_a_map_is_that_of_a_least_squares_plane(peer, there):
     if peer not in there:
