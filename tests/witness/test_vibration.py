@@ -37,6 +37,7 @@ def test_parts_without_a_bolt_are_shaken_and_swept(state):
     (random, sine) = faying.vibration(state, [noise, sweep])
     for one in (random, sine):
         assert one.bolt_force.shape == one.damage.shape == (3, 0)
+        assert "vibration-alone" not in [note.code for note in one.notes]  # no joint, no slip
     peaks = [np.sqrt(random.curve[1].max() / 1e-4), sine.curve[1].max() / 1e-2]
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-3)
 

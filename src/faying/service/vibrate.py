@@ -423,11 +423,11 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
     if np.any(found.get("jumps", np.zeros(1)) > 0):
         text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
         yield Note(code="vibration-jumps", text=text)
-    words = assumed_words(friction=sets.least is not None, rest=not given.base.structure.predicts_loss)
-    if words:
+    if words := assumed_words(friction=sets.least is not None, rest=not given.base.structure.predicts_loss):
         yield Note(code="level-damping", text=f"damping in service assumes {' and '.join(words)}")
-    text = (
-        "each mode has the damping of its own level; where two modes that shake one joint are strong together, the "
-        "joint slips more than either alone makes it"
-    )
-    yield Note(code="vibration-alone", text=text)
+    if given.base.structure.joints:
+        text = (
+            "each mode has the damping of its own level; where two modes that shake one joint are strong together, the "
+            "joint slips more than either alone makes it"
+        )
+        yield Note(code="vibration-alone", text=text)
