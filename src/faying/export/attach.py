@@ -15,7 +15,7 @@ from faying.columns import read_columns
 from faying.decks.deck import ContactProperty, JointDeck, UnitSystem, write
 from faying.decks.meshfile import last_element
 from faying.errors import InputError, ReadError
-from faying.export.condense import at_preload
+from faying.export.condense import under_preload
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.fe.sides import face_centre
@@ -337,7 +337,7 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
         )
     surfaces = surfaces_of(study)
     case = Case(study=study, structure=structure_of(study, mesh, surfaces), surfaces=surfaces)
-    case, springs = at_preload(case, number, Progress(number + 1))
+    case, springs = under_preload(case, number, Progress(number + 1))
     joints = case.structure.joints
     place = next(i for i, joint in enumerate(joints) if joint.faces == faces)
     return joints[place].law, springs[place].pressure, f"of the study's bolts at {units.show(loads[number], 'N')}"

@@ -387,7 +387,7 @@ def condense(
     study = Study.read_bolted(study)
     number, index = _joint(study, joint), preload_index(study.loads, preload, names=study.load_names)
     progress = Progress(STAGES + index, report)
-    case, springs = at_preload(Case.of(study, progress), index, progress)
+    case, springs = under_preload(Case.of(study, progress), index, progress)
     structure = case.structure
     progress.begin("modes")
     modes, *_ = modes_of(case.modal, springs)
@@ -422,7 +422,7 @@ def condense(
     )
 
 
-def at_preload(case: Case, index: int, progress: Progress) -> tuple[Case, tuple[Springs[Interface], ...]]:
+def under_preload(case: Case, index: int, progress: Progress) -> tuple[Case, tuple[Springs[Interface], ...]]:
     """A case under one of its preloads, after those before it, and the springs of its joints there."""
     problem = case.structure.assembly(solver=case.study.modes.solver)
     for preload in case.study.preloads[: index + 1]:

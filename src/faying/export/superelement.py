@@ -12,7 +12,7 @@ from faying.case.case import Case, Progress
 from faying.checks import number
 from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
 from faying.errors import InputError
-from faying.export.condense import at_preload
+from faying.export.condense import under_preload
 from faying.export.matrix_modes import Assembled
 from faying.fe.attach import mean_motion
 from faying.fe.sides import face_centre
@@ -200,7 +200,7 @@ def superelement(
     study, places = _named(Study.read_bolted(study), interfaces)
     index = preload_index(study.loads, preload, names=study.load_names)
     progress = Progress(STAGES + index, report)
-    case, springs = at_preload(Case.of(study, progress), index, progress)
+    case, springs = under_preload(Case.of(study, progress), index, progress)
     structure = case.structure
     names, points, rows, dofs = _interfaces(structure, places)
     progress.begin("modes")
