@@ -130,8 +130,9 @@ def test_nothing_half_written_is_left(result, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["r.nc"]
 
 
-def test_names_that_do_not_fit_the_geometry_are_reported_together_and_first(study, monkeypatch):
-    monkeypatch.setattr("faying.case.case.joint_law", lambda *_: pytest.fail("a law was solved before"))
+def test_names_that_do_not_fit_the_geometry_are_reported_together_before_a_contact_is_solved(study, monkeypatch):
+    monkeypatch.setattr("faying.case.case.joint_law", lambda *_: pytest.fail("a contact was solved"))
+    study = replace(study, law=LawChoice(model="half-space"))
     bolt = replace(study.bolts[0], faces=("upper.seat", "lower.nut"))
     joint = replace(study.joints[0], faces=("upper.joint", "floor"))
     with pytest.raises(faying.InputError) as caught:

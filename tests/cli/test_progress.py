@@ -101,7 +101,7 @@ def test_options_choose_what_stderr_shows():
     assert all(one.exit_code == 0 for one in found.values())
     assert found["-q"].stderr == ""
     lines = found["-v"].stderr.splitlines()
-    assert lines[0].split(" s  ")[1] == "mesh"
+    assert lines[0].split(" s  ")[1] == "surface"
     assert lines[-1].endswith(" s  done")
     events = [json.loads(line) for line in found["--progress json"].stderr.splitlines()]
     assert [event["stage"] for event in events] == [*stages(Study.read(study)), "done"]

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 import faying
-from faying.case.case import checked_laws, surfaces_of
+from faying.case.case import build, surfaces_of
 from faying.cli.scan.law import command as law_command
 from faying.identify.sampling.ensemble import Ensemble
 from faying.setup import template
@@ -64,8 +64,8 @@ def k_n(law, pressures=PRESSURES):
 
 
 def by_run(plan):
-    (law,) = checked_laws(plan, surfaces_of(plan)).values()
-    return law.model
+    (joint,) = build(plan).joints
+    return joint.law.model
 
 
 def by_attach(plan, folder):

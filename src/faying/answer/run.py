@@ -113,7 +113,7 @@ def stages(study: Study) -> list[str]:
     """The stages that `run` reports for a study, in their order."""
     loads = [one.name for one in study.preloads]
     out = [] if study.hammer is None else ["hammer test"]
-    out += ["mesh", "surface"]
+    out += ["surface", "mesh"]
     for number, load in enumerate(loads):
         out += [f"preload {load}"] * bool(study.bolts) + [f"modes at {load}"]
         out += [f"frequency response at {load}"] if study.response is not None else []

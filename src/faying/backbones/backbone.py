@@ -11,7 +11,7 @@ import numpy as np
 
 from faying.backbones.result import BackboneCurve, collected
 from faying.case.alternative import changed, study_with
-from faying.case.case import Case, checked_structure, law_reasons, surfaces_of
+from faying.case.case import Case, checked_laws, law_reasons, read_for, surfaces_of
 from faying.errors import InputError
 from faying.fe.interface import Interface
 from faying.joint.attachments import nearest_node
@@ -252,10 +252,11 @@ def backbones(
     frictions = friction_of(study, choice)
     progress = _Progress(report, max(len(choice.laws), 1) * len(indices) * len(frictions))
     progress.stage("surface and mesh", 0.0)
-    case = Case.of(study)
-    for law in choice.laws:  # raises, before a curve is followed
+    read = read_for(study, surfaces_of(study))
+    for law in choice.laws:
         other = study_with(study, _on_all_joints(study, law))
-        checked_structure(other, case.structure.mesh, surfaces_of(other, case.read))
+        checked_laws(other, surfaces_of(other, read))  # raises, before the mesh
+    case = Case.of(study, read=read)
     file = None if out is None else Path(out)
     with CurveStore(file, fingerprint(study, choice, indices)) as store:
         made = _curves(case, choice, indices, frictions, store, progress)

@@ -8,7 +8,9 @@ import numpy as np
 
 from faying.case.hammer import Hammer
 from faying.case.places import named_points, on_structure
+from faying.contact.build import AUTO
 from faying.contact.mates import takes_fit
+from faying.contact.models.half_space import HalfSpace
 from faying.errors import InputError
 from faying.fe.bonded import bonded_mesh
 from faying.fe.interface import Interface, join
@@ -86,11 +88,11 @@ class Case:
         if study.hammer is not None:
             progress.begin("hammer test")
             hammer = Hammer.read(study.hammer)
-        progress.begin("mesh")
-        mesh = checked_mesh(study)
         progress.begin("surface")
         surfaces = surfaces_of(study, read)
-        structure = checked_structure(study, mesh, surfaces)
+        laws = checked_laws(study, surfaces)
+        progress.begin("mesh")
+        structure = structure_of(study, checked_mesh(study), surfaces, laws)
         for _, what, point in named_points(study):
             on_structure(what, point, structure.mesh)
         notes = [Note(code="surface", text=text) for text in fit_warnings(study, surfaces)]
@@ -119,8 +121,7 @@ class Case:
     @property
     def read(self) -> Read:
         """Surfaces that have been read for this case, which need not be read again for another law."""
-        choices = (joint.surface or self.study.surface for joint in self.study.joints)
-        return {choice: one for choice, one in zip(choices, self.surfaces, strict=True) if choice is not None}
+        return read_for(self.study, self.surfaces)
 
     def under(self, preload: PreloadState) -> Self:
         """The case with the laws that its joints have under a preload."""
@@ -166,6 +167,12 @@ def mates_notes(laws: Sequence[JointLaw], *, alike: bool = False) -> list[Note]:
     return [Note(code="mates", text=line + hint) for line in lines]
 
 
+def read_for(study: Study, surfaces: Sequence[Surface]) -> Read:
+    """The surfaces of a study's joints by what they were read from."""
+    choices = (joint.surface or study.surface for joint in study.joints)
+    return {choice: one for choice, one in zip(choices, surfaces, strict=True) if choice is not None}
+
+
 def fit_warnings(study: Study, surfaces: Sequence[Surface]) -> tuple[str, ...]:
     """What the fits of D and G warn of, where a law takes them or waves go on with their spectrum."""
     others = [one.law for one in study.alternatives if one.law is not None]
@@ -196,6 +203,29 @@ def surfaces_of(study: Study, read: Read | None = None) -> tuple[Surface, ...]:
 def joint_law(joint: JointChoice, law: LawChoice, surface: Surface, rough: Material, other: Material) -> JointLaw:
     """Lay the law on a joint between the rough face's material and the other one, for run, sweep and attach alike."""
     return joint.laid(law.make(surface, rough, other), rough.nu)
+
+
+def part_of(study: Study, face: str) -> str | None:
+    """The part that a face belongs to by its name (part.face) or its selector; None where neither says it."""
+    part = study.geometry.face[face].part if face in study.geometry.face else face.partition(".")[0]
+    return part if part in study.parts else None
+
+
+def checked_laws(study: Study, surfaces: Sequence[Surface]) -> dict[tuple[str, str, str], JointLaw]:
+    """Lay the laws on those joints whose materials are known before there is a mesh; by joint and both parts.
+
+    Raises InputError for laws that a joint cannot use: in seconds, where meshing may take minutes. A contact that has
+    to be solved takes longer than most meshes, which tell of names that do not fit: it waits.
+    """
+    out: dict[tuple[str, str, str], JointLaw] = {}
+    for joint, surface in zip(study.joints, surfaces, strict=True):
+        parts = [part_of(study, face) for face in joint.faces]
+        if None not in parts and study.law_of(joint).model not in (AUTO, HalfSpace.name):
+            rough, other = (study.materials[study.parts[str(part)]] for part in parts)
+            law = joint_law(joint, study.law_of(joint), surface, rough, other)
+            law.check()
+            out[joint.name, str(parts[0]), str(parts[1])] = law
+    return out
 
 
 def materials_at(study: Study, mesh: Mesh, joint: JointChoice) -> tuple[Material, Material]:
@@ -332,12 +362,17 @@ def _heated(study: Study) -> list[tuple[str, str]]:
     ]
 
 
-def structure_of(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Structure:
-    """Return the structure of a study on a mesh, with the surface of each joint."""
+def structure_of(
+    study: Study, mesh: Mesh, surfaces: tuple[Surface, ...], laws: Mapping[tuple[str, str, str], JointLaw] | None = None
+) -> Structure:
+    """Return the structure of a study on a mesh, with the surface of each joint; laws: those of `checked_laws`."""
     joints: list[FittedJoint] = []
     notes: list[Note] = []
     for joint, surface in zip(study.joints, surfaces, strict=True):
-        law = joint_law(joint, study.law_of(joint), surface, *materials_at(study, mesh, joint))
+        parts = (mesh.face_part[joint.faces[0]], mesh.face_part[joint.faces[1]])
+        law = (laws or {}).get((joint.name, *parts)) or joint_law(
+            joint, study.law_of(joint), surface, *materials_at(study, mesh, joint)
+        )
         interface, closed = interface_of(study, mesh, joint, surface)
         notes += closed
         joints.append(
@@ -383,19 +418,9 @@ def snapped(interface: Interface, snap: float, name: str) -> tuple[Interface, li
 
 def build(study: Study) -> Structure:
     """Return the structure of a study, meshed and with its law on the joints, for work that goes on by hand."""
-    mesh = checked_mesh(study)
-    return checked_structure(study, mesh, surfaces_of(study))
-
-
-def checked_structure(study: Study, mesh: Mesh, surfaces: tuple[Surface, ...]) -> Structure:
-    """Return the structure, whose laws its joints can use.
-
-    It asks for a mesh: names that do not fit it are found before a law is solved, which takes longer.
-    """
-    structure = structure_of(study, mesh, surfaces)
-    for joint in structure.joints:
-        joint.law.check()
-    return structure
+    surfaces = surfaces_of(study)
+    laws = checked_laws(study, surfaces)
+    return structure_of(study, checked_mesh(study), surfaces, laws)
 
 
 def bare(study: Study) -> Study:

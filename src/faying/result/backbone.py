@@ -61,19 +61,6 @@ class ErrorBounds:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ForcedResponse:
-    """Steady response to a harmonic force near one mode, along the curve; a frequency may have several answers.
-
-    force [N]; frequency [Hz], acceleration [m/s2], phase [rad] of the motion behind the force: (k,).
-    """
-
-    force: float
-    frequency: Array
-    acceleration: Array
-    phase: Array
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class RingDown:
     """Free decay along the curve: time [s], acceleration amplitude [m/s2], frequency [Hz], damping ratio [-] (k,)."""
 
@@ -249,43 +236,6 @@ class Backbone(Recorded):
         """Acceleration [m/s2] at the point at modal amplitudes [m kg^1/2]."""
         scale = self.acceleration / self.modal_amplitude
         return np.asarray(amplitude * np.interp(np.log(amplitude), np.log(self.modal_amplitude), scale))
-
-    @checked_call
-    def forced_response(self, force: float, *, points: int = 400) -> ForcedResponse:
-        """Steady response to a harmonic force [N] at the point `at` along `direction`, near this mode alone.
-
-        At each amplitude q of the curve (-W^2 + 2 i zeta w W + w^2) q = modal force has up to two frequencies W, below
-        and above the resonance; beyond the force's reach it has none.
-        """
-        if not force > 0:
-            raise InputError(f"force = {force:g} N should be positive")
-        pushed = force * abs(self.shape_at)
-        q = np.geomspace(self.modal_amplitude[0], self.modal_amplitude[-1], points)
-        known = np.flatnonzero(self._left(q, pushed)[0] >= 0)
-        if len(known) and known[-1] + 1 < points:  # finer about the greatest amplitude
-            top = np.geomspace(q[known[-1]], q[known[-1] + 1], points // 4)
-            q = np.unique(np.concatenate([q, top]))
-        inside, w, z = self._left(q, pushed)
-        middle = w**2 * (1 - 2 * z**2)
-        reached = inside >= 0
-        half = np.sqrt(np.where(reached, inside, 0.0))
-        below = reached & (middle > half)
-        lower, upper = np.sqrt(np.where(below, middle - half, 1.0)), np.sqrt(middle + half)
-        drive = np.concatenate([lower[below], upper[reached][::-1]])
-        amplitude = np.concatenate([q[below], q[reached][::-1]])
-        w, z = (np.concatenate([x[below], x[reached][::-1]]) for x in (w, z))
-        return ForcedResponse(
-            force=force,
-            frequency=drive / (2 * np.pi),
-            acceleration=self._acceleration(amplitude) * (drive / w) ** 2,
-            phase=np.arctan2(2 * z * w * drive, w**2 - drive**2),
-        )
-
-    def _left(self, q: Array, pushed: float) -> tuple[Array, Array, Array]:
-        """What is under the root for the frequencies of a modal force, below 0 beyond its reach; w and zeta."""
-        f, z = self._between(self.modal_amplitude, q)
-        w = 2 * np.pi * f
-        return (pushed / q) ** 2 - (2 * z * w**2) ** 2 * (1 - z**2), w, z
 
     def to_dict(self) -> dict[str, Any]:
         """Return the numbers a reader wants, ready for JSON: {"unit", "values"} in SI; maps are left out."""

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from faying.case.case import surfaces_of
-from faying.errors import InputError
+from faying.case.case import checked_laws, surfaces_of
+from faying.errors import FayingError, InputError
 from faying.misuse import checked_call
 from faying.progress import Report, silent
 from faying.reduction.reduced import ReducedModel
@@ -22,6 +22,7 @@ from faying.sweeps.variant_builder import VariantBuilder, contact_shares
 from faying.typing import Array
 
 CHUNK = 25  # evaluations between two writings to disk
+MAX_LAWS = 100  # looked at before there is a mesh
 
 
 def evaluate(model: ReducedModel, builder: VariantBuilder, indices: Sequence[int]) -> dict[str, Array]:
@@ -82,6 +83,7 @@ def sweep(
     _check(study, tolerance)
     report("surface", 0, 0)
     grid = Grid(study=study, surfaces=surfaces_of(study), axes=tuple(axes))
+    _check_laws(grid)
     mark = fingerprint(study, tuple(axes), tolerance)
     with SweepStore(Path(out), mark, grid.size, study.modes.count) as store:
         report("mesh", 0, 0)
@@ -100,6 +102,26 @@ def sweep(
         model = _enriched(model, trainer, store)
         unknowns = trainer.structure.mesh.unknowns
         return store.written(grid, title=study.title, tolerance=tolerance, unknowns=unknowns, model=model)
+
+
+def _check_laws(grid: Grid) -> None:
+    """Raise the fault of the first law where no point of the grid has laws that its joints can use.
+
+    Before the mesh, for the joints whose materials are known by then; without preloads, which change no law.
+    """
+    places = np.indices(grid.shape).reshape(len(grid.shape), -1)
+    first = [k for k, axis in enumerate(grid.axes) if axis.key.startswith("bolt.")]
+    fault: FayingError | None = None
+    for index in np.flatnonzero((places[first] == 0).all(axis=0))[:MAX_LAWS]:
+        point = grid.point(int(index))
+        try:
+            checked_laws(point.study, point.surfaces)
+        except FayingError as met:
+            fault = fault or met
+        else:
+            return
+    if fault is not None:
+        raise fault
 
 
 def _check(study: Study, tolerance: float) -> None:
