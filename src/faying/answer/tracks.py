@@ -42,7 +42,7 @@ def encounters(states: Sequence[LoadedCase], steps: Sequence[Array]) -> Iterator
         for step in sorted({k for k, _, _ in found}):
             pairs = ", ".join(f"{i + 1} and {j + 1}" for k, i, j in found if k == step)
             before, after = (load_text(states[step + k].load) for k in (0, 1))
-            text = f"modes {pairs} {code.partition('-')[2]} between {before} and {after} (MAC weighted by mass)"
+            text = f"modes {pairs} {code.removeprefix('modes-')} between {before} and {after} (MAC weighted by mass)"
             yield Note(code=code, load=states[step + 1].load, text=text)
 
 

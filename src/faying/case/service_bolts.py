@@ -63,7 +63,7 @@ def service_bolts(structure: BoltedStructure, study: Study | None = None) -> tup
         curve, force = choice.curve, None
         if curve is None and size is not None:
             curve = FatigueCurve.iec(size) if choice.fatigue == "iec" else FatigueCurve.vdi(size)
-            if choice.fatigue == "vdi" and choice.rolled == "after" and bolt.fastener is not None:
+            if choice.by_yield and bolt.fastener is not None:
                 force = bolt.fastener.yield_stress * fatigue_area(fitted)
         made = ServiceBolt(head_friction=friction, fatigue=curve, yield_force=force, guided_compliance=compliance)
         out.append(made)

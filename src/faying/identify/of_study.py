@@ -39,7 +39,7 @@ class StudyModel(Model):
     """A study in its reduced bases, under one of its laws, as an identification asks for it.
 
     Tests of parts move its frequencies; what they leave open is less than the discrepancy that is identified. The
-    error of the mesh moves them too, and what is not known of it counts beside scatter and discrepancy.
+    error of the mesh moves them too, and what is not known of it counts with scatter and discrepancy.
     """
 
     def __init__(

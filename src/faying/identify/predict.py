@@ -126,7 +126,7 @@ def predict(
         follower = None if choice is None else Follower.of(ensemble, choice, reduced)
         rows = reduced.rows(ensemble)
         parts = KnownParts.of(given, structure, reduced.modes(ensemble)) if study.part_tests else None
-        found = predicted(study, ensemble, reduced, rows, seed, parts, reduced.mesh_error(ensemble))
+        found = predicted(study, ensemble, reduced, rows, seed, parts)
         if follower is not None:
             found = found.with_backbones(follower.follow(backbones, reduced))
         if file is not None:
@@ -154,22 +154,16 @@ def check(study: Study, samples: int) -> None:
 
 
 def predicted(
-    study: Study,
-    ensemble: Ensemble,
-    reduced: Reduced,
-    rows: Rows,
-    seed: int,
-    parts: KnownParts | None,
-    mesh: MeshError | None,
+    study: Study, ensemble: Ensemble, reduced: Reduced, rows: Rows, seed: int, parts: KnownParts | None
 ) -> Prediction:
     """Put the rows of all samples together, with what there is to say of them.
 
-    parts: those with tests of their own, which move every sample alike; mesh: its error, where it is known.
+    parts: those with tests of their own, which move every sample alike, as the error of the mesh does.
     """
     reasons = [str(reason) for reason in rows["reasons"]]
     if all(reasons):
         raise InputError(f"none of {len(reasons)} samples has an answer; the first: {reasons[0]}")
-    moved = np.zeros(rows["frequencies"].shape[1:])
+    mesh, moved = reduced.mesh_error(ensemble), np.zeros(rows["frequencies"].shape[1:])
     lacking = np.full(moved.shape, discrepancy(study.uncertain or UncertainChoice()))
     if parts is not None:
         moved, lacking = parts.left()

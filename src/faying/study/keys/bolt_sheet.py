@@ -59,6 +59,11 @@ class BoltSheetChoice:
     fatigue: Literal["vdi", "iec"] = "vdi"
     curve: FatigueCurve | None = None
 
+    @property
+    def by_yield(self) -> bool:
+        """Whether what the thread bears depends on the force at yield: rolled after heat treatment, VDI 2230."""
+        return self.curve is None and self.fatigue == "vdi" and self.rolled == "after"
+
     @classmethod
     def of(cls, table: Table, bolts: Sequence[str], cases: Sequence[str]) -> "BoltSheetChoice":
         """Read one [[bolt_sheet]]."""
@@ -126,9 +131,9 @@ def read_bolt_sheets(
             who = "no bolt" if choice.bolt is None else f'the bolt "{choice.bolt}"'
             table.faults.add(f"{table.where}: two tables name {who}; leave one out")
         unknown = [one.name for one in bolts if one.fastener is None and choice_of(found, one.name) is choice]
-        if choice.rolled == "after" and choice.fatigue == "vdi" and choice.curve is None and unknown:
+        if choice.by_yield and unknown:
             table.faults.add(
-                f'{table.where}.rolled = "after": what the thread bears then hangs on the yield stress of its class, '
+                f'{table.where}.rolled = "after": what the thread bears then depends on the yield stress of its class, '
                 f'and the bolt "{unknown[0]}" has none; give it grade = "10.9", or leave out rolled'
             )
     return found
