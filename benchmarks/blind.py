@@ -59,13 +59,13 @@ def compared(folder: Path) -> Measured | None:
     result, rows = faying.run(ready(folder)), measured(folder)
     if not rows:
         for mode, (low, best, high) in enumerate(
-            zip(result.interval.low[-1], result.interval_best[-1], result.interval.high[-1], strict=True), 1
+            zip(result.interval.low[-1], result.interval.best[-1], result.interval.high[-1], strict=True), 1
         ):
             print(f"{folder.name}, mode {mode}: {low:.4g} .. {best:.4g} .. {high:.4g} Hz, nothing published")
         return None
     at = tuple(np.array([(row.load - 1, row.mode - 1) for row in rows]).T)
     test = np.array([row.frequency for row in rows])
-    best, low, high = (array[at] for array in (result.interval_best, result.interval.low, result.interval.high))
+    best, low, high = (array[at] for array in (result.interval.best, result.interval.low, result.interval.high))
     for row, *ends in zip(rows, low, best, high, strict=True):
         inside = "" if ends[0] <= row.frequency <= ends[2] else "  OUTSIDE"
         error = 100 * (ends[1] / row.frequency - 1)

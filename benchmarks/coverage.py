@@ -137,9 +137,9 @@ class Tee:
         load, modes = np.arange(len(result.loads))[:, None], result.comparison.modes
         return cls(
             test=np.log(result.comparison.frequencies),
-            frequencies=np.log(result.interval_best[load, modes]),
+            frequencies=np.log(result.interval.best[load, modes]),
             offsets=result.interval.offsets[:, :, load, modes],
-            sources=result.interval_sources,
+            sources=result.interval.sources,
             plane=lambda x: np.log(identify.in_plane(identify.dimensions(x))),
             start=identify.START,
             bounds=identify.BOUNDS,
@@ -236,22 +236,22 @@ def beam() -> tuple[Measured, list[tuple[str, bool]]] | None:
     for friction in (FRICTION[0], FRICTION[2]):
         joints = tuple(replace(joint, friction=friction) for joint in study.joints)
         other = faying.run(replace(study, joints=joints, modes=replace(study.modes, intervals=False)))
-        ends.append(np.log(other.level_frequencies / result.level_frequencies)[-1])
+        ends.append(np.log(other.levels.frequencies / result.levels.frequencies)[-1])
     scores, widths, damping = [], [], []
     for name, plot in PLOTS.items():
         for level, test in zip(plot.levels, plot.frequencies, strict=True):
             k = levels.index(level)
             friction_ends = np.array([[end[k, plot.mode]] for end in ends])
             offsets = np.concatenate([result.interval.offsets[:, :, -1, plot.mode, None], friction_ends[None]])
-            best = (result.interval_best / result.frequencies)[-1, plot.mode]
-            score, width = scored(offsets, best * result.level_frequencies[-1, k, plot.mode, None], np.array([test]))
-            print(f"beam, {name}, {level:g} m/s2: {result.level_frequencies[-1, k, plot.mode]:.2f} Hz, test {test:g}")
+            best = (result.interval.best / result.frequencies)[-1, plot.mode]
+            score, width = scored(offsets, best * result.levels.frequencies[-1, k, plot.mode, None], np.array([test]))
+            print(f"beam, {name}, {level:g} m/s2: {result.levels.frequencies[-1, k, plot.mode]:.2f} Hz, test {test:g}")
             scores.append(score)
             widths.append(width)
         rows = ((SMALL, plot.at_rest), *zip(plot.levels, plot.damping, strict=True))
         for level, ratio in rows:
             k = levels.index(level)
-            low, high = (float(end[-1, k, plot.mode]) for end in (result.level_low, result.level_high))
+            low, high = (float(end[-1, k, plot.mode]) for end in (result.levels.low, result.levels.high))
             words = f"beam, {name}, {level:g} m/s2: {100 * ratio:g} % of {100 * low:.3f} .. {100 * high:.3f} %"
             damping.append((words, low <= ratio <= high))
     return (

@@ -81,10 +81,9 @@ def measured(result: Result) -> tuple[Any, Any, Any, Any]:
     """Measured frequencies (load, test mode) [Hz], the modes that they are paired with, and the ends of these."""
     c = result.comparison
     assert c is not None
-    assert result.interval_low is not None
-    assert result.interval_high is not None
+    assert result.interval is not None
     rows = np.arange(len(result.loads))[:, None]
-    return c.frequencies, c.modes, result.interval_low[rows, c.modes], result.interval_high[rows, c.modes]
+    return c.frequencies, c.modes, result.interval.low[rows, c.modes], result.interval.high[rows, c.modes]
 
 
 @drawing

@@ -16,10 +16,10 @@ examples = next(path / "examples" for path in Path.cwd().parents if (path / "exa
 study = faying.Study.read(examples / "two-blocks" / "study.toml")
 result = faying.run(study)
 for mode, (low, middle, high) in enumerate(
-    zip(result.interval_low[-1], result.frequencies[-1], result.interval_high[-1], strict=True), start=1
+    zip(result.interval.low[-1], result.frequencies[-1], result.interval.high[-1], strict=True), start=1
 ):
     print(f"mode {mode}: {low:7.0f} .. {middle:7.0f} .. {high:7.0f} Hz")
-assert (result.interval_low[-1] < result.frequencies[-1]).all()
+assert (result.interval.low[-1] < result.frequencies[-1]).all()
 
 # %%
 # The frequencies are near the upper end or above it. With D and G alone the law is JK, and measured joints have a
@@ -28,8 +28,8 @@ assert (result.interval_low[-1] < result.frequencies[-1]).all()
 # Each source of doubt shifts every frequency to a lower and a higher one. The squares of these widths add up, so that
 # their shares say what is worth a measurement.
 
-width = np.ptp(result.interval_offsets, axis=1)[:, -1] ** 2
-for name, share in zip(result.interval_sources, width / width.sum(axis=0), strict=True):
+width = np.ptp(result.interval.offsets, axis=1)[:, -1] ** 2
+for name, share in zip(result.interval.sources, width / width.sum(axis=0), strict=True):
     print(f"{name:10s}", " ".join(f"{value:5.0%}" for value in share))
 
 # %%

@@ -60,7 +60,7 @@ def main() -> None:
     print("\n" + table.text(rows))
     rows = [["rms error at the last load", "own [%]", "test before times own ratio [%]", "skill", "skill of the ratio"]]
     rows.append(skill("same as at the load before", c.frequencies, np.ones_like(c.frequencies) * c.frequencies[-2]))
-    for name, found in zip(result.alternatives, c.alternatives, strict=True):
+    for name, found in zip(result.alternatives.names, c.alternatives, strict=True):
         rows.append(skill(name, c.frequencies, found))
     for seed, found in zip(SEEDS, wavy, strict=True):
         rows.append(skill(f"default, waves, draw {seed}", c.frequencies, found))

@@ -102,10 +102,10 @@ def test_modes_that_fall_with_preload_are_named_with_the_reason(default):
 
 
 def test_other_laws_stand_beside_as_if_they_were_run_alone(default, closed, tmp_path):
-    assert default.alternatives == ("JK, one rough face", "GW", "hollow")
-    assert default.alternative_frequencies[1] == pytest.approx(closed.frequencies, rel=1e-6)
-    assert np.isnan(default.alternative_loss_factors[1]).all()
-    assert np.all(default.alternative_loss_factors[0] > 0)
+    assert default.alternatives.names == ("JK, one rough face", "GW", "hollow")
+    assert default.alternatives.frequencies[1] == pytest.approx(closed.frequencies, rel=1e-6)
+    assert np.isnan(default.alternatives.loss_factors[1]).all()
+    assert np.all(default.alternatives.loss_factors[0] > 0)
     assert "k_t/k_n = 0.824 is Mindlin's, assumed" in " ".join(texts(closed, "assumed"))
     told = texts(default, "assumed")
     assert all(text.startswith("alternative ") for text in told)
@@ -117,15 +117,15 @@ def test_other_laws_stand_beside_as_if_they_were_run_alone(default, closed, tmp_
 def test_the_table_of_laws_has_shares_reach_and_both_answers(default, closed):
     """The other law's columns are those of its own run."""
     head, own, jk, gw, hollow = table.laws(default)
-    assert [row[0] for row in (own, jk, gw, hollow)] == ["half-space", *default.alternatives]
-    assert default.alternative_reach[1] == pytest.approx(closed.laws[0]["greatest_pressure [Pa]"])
-    assert default.alternative_outside_share[1] == pytest.approx(closed.outside_share, abs=1e-6)
-    past = default.pressure > default.alternative_reach[0]
-    assert default.alternative_above_range_share[0] == pytest.approx(
+    assert [row[0] for row in (own, jk, gw, hollow)] == ["half-space", *default.alternatives.names]
+    assert default.alternatives.reach[1] == pytest.approx(closed.laws[0]["greatest_pressure [Pa]"])
+    assert default.alternatives.outside_share[1] == pytest.approx(closed.outside_share, abs=1e-6)
+    past = default.pressure > default.alternatives.reach[0]
+    assert default.alternatives.above_range_share[0] == pytest.approx(
         past @ default.weights / default.weights.sum(), abs=0.05
     )
-    assert np.all(default.alternative_above_range_frequencies >= default.alternative_frequencies * (1 - 1e-9))
-    assert np.all(default.alternative_above_range_share[1] == 0)
+    assert np.all(default.alternatives.above_range_frequencies >= default.alternatives.frequencies * (1 - 1e-9))
+    assert np.all(default.alternatives.above_range_share[1] == 0)
     assert len(head) == len(own) == len(jk) == len(gw)
 
 
@@ -134,7 +134,7 @@ def test_a_form_beside_is_that_of_a_run_with_it(default, tmp_path):
     hollow = Study.read(coarse(tmp_path))
     joint = replace(hollow.joints[0], form=Form(crown_along=-20e-6))
     found = run(replace(hollow, joints=(joint,)))
-    assert default.alternative_frequencies[2] == pytest.approx(found.frequencies, rel=1e-6)
+    assert default.alternatives.frequencies[2] == pytest.approx(found.frequencies, rel=1e-6)
     assert np.abs(found.frequencies / default.frequencies - 1).max() > 1e-3
 
 

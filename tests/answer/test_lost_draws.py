@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 import faying
-from faying.answer.interval import Joints, WaveBand, _combined
+from faying.answer.interval import Joints, _combined
 from faying.errors import NotConverged
 from faying.joint.modal import ModesChoice
 from faying.notes import INCOMPLETE
 from faying.output.answer import answer
 from faying.reduction.reduce import Reduction
+from faying.result.groups import WaveDraws
 from faying.study import Study
 from tests.helpers.preloads import pulled
 from tests.helpers.studies import write
@@ -54,11 +55,11 @@ def test_one_draw_that_has_no_answer_loses_one_draw(study, complete, monkeypatch
 
     without(monkeypatch, third_of_the_gaps)
     found = faying.run(study)
-    assert found.interval_sources == complete.interval_sources
-    assert len(found.wave_seeds) == len(complete.wave_seeds) - 1
-    left = [list(complete.wave_seeds).index(seed) for seed in found.wave_seeds]
+    assert found.interval.sources == complete.interval.sources
+    assert len(found.waves.seeds) == len(complete.waves.seeds) - 1
+    left = [list(complete.waves.seeds).index(seed) for seed in found.waves.seeds]
     # within what the small bases miss
-    assert found.wave_frequencies == pytest.approx(complete.wave_frequencies[left], rel=5e-4)
+    assert found.waves.frequencies == pytest.approx(complete.waves.frequencies[left], rel=5e-4)
     (note,) = [note for note in found.notes if note.code == INCOMPLETE]
     assert "1 of 4 draws of waves, which found no answer: no equilibrium" in note.text
     assert note.severity == "wrong"
@@ -73,8 +74,8 @@ def test_a_law_that_has_no_answer_leaves_the_waves(study, complete, monkeypatch)
 
     without(monkeypatch, stiff)
     found = faying.run(study)
-    assert set(complete.interval_sources) - set(found.interval_sources) == {"law"}
-    assert found.wave_frequencies == pytest.approx(complete.wave_frequencies, rel=5e-4)
+    assert set(complete.interval.sources) - set(found.interval.sources) == {"law"}
+    assert found.waves.frequencies == pytest.approx(complete.waves.frequencies, rel=5e-4)
     assert any("do not contain law, which found no answer" in note.text for note in found.notes)
 
 
@@ -91,9 +92,9 @@ def test_a_lost_first_draw_leaves_the_law(study, complete, monkeypatch):
 
     without(monkeypatch, of_the_first)
     found = faying.run(study)
-    assert found.interval_sources == complete.interval_sources
+    assert found.interval.sources == complete.interval.sources
     # a draw is worth its distance from the others
-    assert found.interval_best == pytest.approx(complete.interval_best, rel=0.3)
+    assert found.interval.best == pytest.approx(complete.interval.best, rel=0.3)
 
 
 def test_the_best_estimate_has_the_medians_of_the_law_in_every_draw():
@@ -103,7 +104,7 @@ def test_the_best_estimate_has_the_medians_of_the_law_in_every_draw():
     states = [SimpleNamespace(damped=SimpleNamespace(frequencies=f), ends=None)]
     draws = f * np.array([1.1, 0.9, 1.2, 1.0])[:, None, None]
     medians = draws * np.array([0.5, 0.8, 1.0, 1.3])[:, None, None]
-    band = WaveBand(seeds=(0, 1, 2, 3), frequencies=draws, rms=np.zeros(1), ends=np.zeros((1, 2)))
+    band = WaveDraws(seeds=np.arange(4), frequencies=draws, rms=np.zeros(1), lengths=np.zeros((1, 2)))
     joints = Joints(band=band, medians=list(zip(draws, medians, strict=True)))
     best = _combined(SimpleNamespace(study=study, loads=np.ones(1)), {}, states, None, None, joints).best
     assert best == pytest.approx(np.exp(np.log(medians).mean(axis=0)), rel=1e-12)

@@ -150,7 +150,7 @@ def test_a_study_and_a_state_without_joints_print_themselves(folder):
 
 
 def test_the_interval_of_a_part_holds_its_frequency_as_modelled(result):
-    assert np.all((result.interval_low < result.frequencies) & (result.frequencies < result.interval_high))
+    assert np.all((result.interval.low < result.frequencies) & (result.frequencies < result.interval.high))
 
 
 def test_the_command_prints_and_writes_it(folder):

@@ -145,23 +145,23 @@ def test_names_that_do_not_fit_the_geometry_are_reported_together_before_a_conta
 
 
 def test_a_preload_that_the_law_covers_has_one_answer(result):
-    assert result.above_range_frequencies is None
+    assert result.above_range is None
     assert not any(note.code.startswith("beyond-law") for note in result.notes)
 
 
 def test_a_preload_that_the_law_does_not_cover_has_two_answers(study):
     """Held below, bonded above; what goes on rising beyond the law lies between them."""
     found = run(pulled(study, 1e3, 5e5))
-    assert found.above_range_frequencies[0] == pytest.approx(found.frequencies[0], rel=1e-12)  # inside the law
-    assert np.all(found.above_range_frequencies[1] >= found.frequencies[1])
+    assert found.above_range.frequencies[0] == pytest.approx(found.frequencies[0], rel=1e-12)  # inside the law
+    assert np.all(found.above_range.frequencies[1] >= found.frequencies[1])
     assert np.all(
-        found.above_range_frequencies[1] <= found.bonded * (1 + found.above_range_loss_factors[1] ** 2) * (1 + 1e-4)
+        found.above_range.frequencies[1] <= found.bonded * (1 + found.above_range.loss_factors[1] ** 2) * (1 + 1e-4)
     )
-    assert np.all(found.above_range_loss_factors[1] <= found.loss_factors[1].max())
+    assert np.all(found.above_range.loss_factors[1] <= found.loss_factors[1].max())
     notes = {note.code: note for note in found.notes if note.code.startswith("beyond")}
     assert set(notes) == {"beyond-law", "beyond-law-matters"}
     assert all(note.load == 5e5 for note in notes.values())
-    change = found.above_range_frequencies[1] / found.frequencies[1] - 1
+    change = found.above_range.frequencies[1] / found.frequencies[1] - 1
     assert f"{change.max():.1%}" in notes["beyond-law-matters"].text
     assert "JK cannot answer" in notes["beyond-law-matters"].text
 

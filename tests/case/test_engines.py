@@ -15,6 +15,8 @@ from faying.case import changed
 from faying.errors import InputError
 from faying.joint.shared_modes import RANGE_ERROR
 from faying.numerics.solve import available
+from faying.result import Result
+from faying.result.fields import GROUP
 from faying.result.vibration import VibrationResponse
 from faying.study import Study
 from tests.helpers import studies
@@ -81,19 +83,23 @@ IN_A_BASIS = 4 * changed.TOLERANCE
 NO_SLIP = 1e-7  # damping ratio of modes that do not slip
 
 
-def agree(one, other):
-    """Every field of the results of two engines, each to what it is solved to."""
+def agree(one, other, prefix="", span=1.0):
+    """Every field of the results of two engines, each to what it is solved to; span: of the preloads [N]."""
+    prefix = "level_" if isinstance(one, VibrationResponse) else prefix
+    span = max(np.ptp(one.loads), 1.0) if isinstance(one, Result) else span
     for field in fields(one):
-        if field.name == "level_error" and one.level_slip is not None:
-            slips = one.level_slip > NO_SLIP  # else it is the error of nothing
-            assert one.level_error[slips] == pytest.approx(other.level_error[slips], abs=DAMPING, nan_ok=True)
-        elif field.name == "wave_slopes" and one.wave_slopes is not None:
+        name, a, b = prefix + field.name, getattr(one, field.name), getattr(other, field.name)
+        if GROUP in field.metadata and b is not None:
+            agree(a, b, f"{field.metadata[GROUP]}_", span)
+        elif name == "level_error":
+            slips = one.slip > NO_SLIP  # else it is the error of nothing
+            assert a[slips] == pytest.approx(b[slips], abs=DAMPING, nan_ok=True)
+        elif name == "wave_slopes" and b is not None:
             # differences of frequencies, each to what it is found to
-            most = 2 * IN_A_BASIS * np.nanmax(other.wave_frequencies) / max(np.ptp(other.loads), 1.0)
-            assert one.wave_slopes == pytest.approx(other.wave_slopes, abs=most, nan_ok=True)
+            most = 2 * IN_A_BASIS * np.nanmax(other.frequencies) / span
+            assert a == pytest.approx(b, abs=most, nan_ok=True)
         elif field.name not in OWN:
-            name = f"level_{field.name}" if isinstance(one, VibrationResponse) else field.name
-            alike(name, getattr(one, field.name), getattr(other, field.name))
+            alike(name, a, b)
 
 
 def alike(name, a, b):
@@ -127,9 +133,9 @@ def test_damping_at_levels_does_not_depend_on_what_else_is_asked_for(study, plen
     first = replace(study.preloads[0], forces=(4e3,))
     among = replace(study, preloads=(first, *study.preloads), modes=replace(study.modes, intervals=True))
     one, more = plenty, run(among)
-    assert more.level_slip[-1] == pytest.approx(one.level_slip[0], rel=5e-3, abs=NO_SLIP)
+    assert more.levels.slip[-1] == pytest.approx(one.levels.slip[0], rel=5e-3, abs=NO_SLIP)
     # at the least friction most of the joint slides, and points that open and close move the passes by 2 %
-    assert more.level_high[-1] == pytest.approx(one.level_high[0], rel=0.03, abs=NO_SLIP)
+    assert more.levels.high[-1] == pytest.approx(one.levels.high[0], rel=0.03, abs=NO_SLIP)
 
 
 @pytest.mark.slow

@@ -45,26 +45,26 @@ def found(study):
 
 
 def test_every_mode_has_a_damping_with_both_ends(study, found):
-    assert found.levels == pytest.approx([0.1, 1.0, 10.0])
-    assert found.level_damping.shape == (1, 3, 4)
-    assert np.all(found.level_low <= found.level_damping)
-    assert np.all(found.level_damping <= found.level_high)
-    assert np.all(np.diff(found.level_slip, axis=1) >= -1e-12)
-    assert np.all(found.level_error < 0.02)
+    assert found.levels.accelerations == pytest.approx([0.1, 1.0, 10.0])
+    assert found.levels.damping.shape == (1, 3, 4)
+    assert np.all(found.levels.low <= found.levels.damping)
+    assert np.all(found.levels.damping <= found.levels.high)
+    assert np.all(np.diff(found.levels.slip, axis=1) >= -1e-12)
+    assert np.all(found.levels.error < 0.02)
     # the law has a loss of its own, which is that at rest
-    assert found.level_damping == pytest.approx(found.level_slip + found.loss_factors[:, None] / 2)
+    assert found.levels.damping == pytest.approx(found.levels.slip + found.loss_factors[:, None] / 2)
 
 
 def test_small_motions_have_the_frequency_at_rest_and_larger_ones_less(found):
-    assert found.level_frequencies[:, 0] == pytest.approx(found.frequencies, rel=1e-5)
-    assert np.all(found.level_frequencies[:, 2] <= found.frequencies * (1 + 1e-6))
+    assert found.levels.frequencies[:, 0] == pytest.approx(found.frequencies, rel=1e-5)
+    assert np.all(found.levels.frequencies[:, 2] <= found.frequencies * (1 + 1e-6))
 
 
 def test_a_friction_that_is_given_leaves_nothing_open(study, found):
     joints = tuple(replace(joint, friction=FRICTION[1]) for joint in study.joints)
     given = run(replace(study, joints=joints))
-    assert given.level_low == pytest.approx(given.level_high, rel=1e-12)
-    assert given.level_slip == pytest.approx(found.level_slip, rel=0.05, abs=1e-7)
+    assert given.levels.low == pytest.approx(given.levels.high, rel=1e-12)
+    assert given.levels.slip == pytest.approx(found.levels.slip, rel=0.05, abs=1e-7)
     assert not [note for note in given.notes if note.code == "level-damping"]
     assert [note for note in found.notes if note.code == "level-damping"]
 
@@ -91,18 +91,18 @@ def test_the_terminal_says_no_note_twice_and_three_first(found):
 def test_csv_and_universal_file_have_the_damping(found, tmp_path):
     heads, first = (line.split(",") for line in found.csv_text().splitlines()[:2])
     assert heads[-3:] == [f"damping ratio at {level} m/s2 [-]" for level in ("0.1", "1", "10")]
-    assert [float(value) for value in first[-3:]] == pytest.approx(found.level_damping[0, :, 0], rel=1e-7)
+    assert [float(value) for value in first[-3:]] == pytest.approx(found.levels.damping[0, :, 0], rel=1e-7)
     # where no law has a loss, the modes of data set 55 have that of the middle level
     lossless = replace(found, loss_factors=np.full(found.loss_factors.shape, np.nan))
     universal.write(lossless, tmp_path)
     modes = faying.read_uff(tmp_path / "modes.uff").modes()
-    assert modes.loss_factors == pytest.approx(2 * found.level_damping[-1, 1], rel=1e-4)
+    assert modes.loss_factors == pytest.approx(2 * found.levels.damping[-1, 1], rel=1e-4)
 
 
 def test_springs_that_do_not_slip_have_a_note_in_place_of_damping(study):
     joints = tuple(replace(joint, springs="per-node") for joint in study.joints)
     bare = run(replace(study, joints=joints))
-    assert bare.level_damping is None
+    assert bare.levels is None
     (note,) = [note for note in bare.notes if note.code == "no-level-damping"]
     assert "springs per node" in note.text
     assert note.severity == "limit"
@@ -126,13 +126,13 @@ def test_levels_are_those_of_the_backbone(fine, mode, friction, top):
     picked = [k for k in range(len(curve.acceleration)) if curve.damping[k] > 1e-5][::4]
     levels = tuple(float(curve.acceleration[k]) for k in picked)
     found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
-    slip = found.level_slip[0, :, mode - 1]
+    slip = found.levels.slip[0, :, mode - 1]
     few = curve.damping[picked] < 3e-3
     assert slip[few] == pytest.approx(curve.damping[picked][few], rel=5e-3, abs=1e-7)
     assert slip == pytest.approx(curve.damping[picked], rel=0.02)
-    assert np.all(np.abs(slip / curve.damping[picked] - 1) < found.level_error[0, :, mode - 1] + 2e-3)
+    assert np.all(np.abs(slip / curve.damping[picked] - 1) < found.levels.error[0, :, mode - 1] + 2e-3)
     # the loss of the law at rest, which the curve leaves out, moves the complex mode by as much at every level
-    change = np.diff(found.level_frequencies[0, :, mode - 1])
+    change = np.diff(found.levels.frequencies[0, :, mode - 1])
     assert change == pytest.approx(np.diff(curve.frequency[picked]), abs=5e-4 * curve.frequency[0])
 
 
@@ -150,16 +150,16 @@ def test_any_small_structure_has_damping_as_harmonic_balance_has_or_says_that_it
         modes=replace(read.modes, levels=tuple(np.geomspace(0.01, 1000.0, 6).tolist()), intervals=False),
     )
     found = run(plan)
-    none = np.isnan(found.level_damping)
-    assert np.array_equal(none, np.isnan(found.level_frequencies))
+    none = np.isnan(found.levels.damping)
+    assert np.array_equal(none, np.isnan(found.levels.frequencies))
     assert any(note.code == "no-level-answer" for note in found.notes) == bool(none.any())
-    assert np.all(found.level_slip[~none] < 1.0)
-    mode = 1 + int(np.nanargmax(found.level_slip[0, -2]))
+    assert np.all(found.levels.slip[~none] < 1.0)
+    mode = 1 + int(np.nanargmax(found.levels.slip[0, -2]))
     curve = faying.backbone(plan, mode, float(friction), (1.0, 1000.0), rest_damping=0.0)
     picked = np.flatnonzero(curve.damping > 1e-6)[::4]
     levels = tuple(float(curve.acceleration[k]) for k in picked)
     found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
-    slip, stated = found.level_slip[0, :, mode - 1], found.level_error[0, :, mode - 1]
+    slip, stated = found.levels.slip[0, :, mode - 1], found.levels.error[0, :, mode - 1]
     answered = np.isfinite(slip)
     assert np.count_nonzero(answered) >= len(levels) - 1
     # 3e-6 of a ratio is below the last printed digit
@@ -184,7 +184,7 @@ def test_levels_are_those_of_the_backbone_on_lapped_plates(mode, friction, top):
     picked = np.flatnonzero(curve.damping > 1e-6)[::3]
     levels = tuple(float(curve.acceleration[k]) for k in picked)
     found = run(replace(plan, modes=replace(plan.modes, levels=levels)))
-    slip, stated = found.level_slip[0, :, mode - 1], found.level_error[0, :, mode - 1]
+    slip, stated = found.levels.slip[0, :, mode - 1], found.levels.error[0, :, mode - 1]
     assert slip == pytest.approx(curve.damping[picked], rel=0.01)
     assert np.all(np.abs(slip / curve.damping[picked] - 1) < stated + 2e-3)
-    assert found.level_frequencies[0, :, mode - 1] == pytest.approx(curve.frequency[picked], rel=1e-4)
+    assert found.levels.frequencies[0, :, mode - 1] == pytest.approx(curve.frequency[picked], rel=1e-4)

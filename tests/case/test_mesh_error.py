@@ -70,7 +70,7 @@ def test_a_lap_holds_the_frequencies_of_smaller_elements(lap, coarse):
 
 
 def test_the_error_stands_in_result_table_and_note(coarse, tmp_path):
-    low, high = coarse.interval.offsets[coarse.interval_sources.index("mesh")]
+    low, high = coarse.interval.offsets[coarse.interval.sources.index("mesh")]
     assert coarse.mesh_error == pytest.approx((high - low) / 2)
     assert np.all(coarse.mesh_error > 0)
     again = faying.load(coarse.save(tmp_path / "result.nc"))

@@ -83,7 +83,7 @@ def test_the_half_height_beam_is_inside_as_the_table_says(tmp_path: Path) -> Non
     for row in rows(folder):
         at, test = int(row["mode"]) - 1, float(row["frequency [Hz]"])
         assert result.interval.low[-1][at] < test < result.interval.high[-1][at]
-        printed.append(f"{100 * (result.interval_best[-1][at] / test - 1):+.1f}")
+        printed.append(f"{100 * (result.interval.best[-1][at] / test - 1):+.1f}")
     assert f"| {printed[0]} and {printed[1]} % |" in text
     moved = np.square(result.shapes[-1]).sum(axis=1)  # of each mode, along x, y and z
     assert list(moved.argmax(axis=1)[:3]) == [2, 1, 2]

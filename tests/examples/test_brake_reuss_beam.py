@@ -189,13 +189,13 @@ def test_levels_of_three_bending_modes_are_those_of_harmonic_balance(folder):
     for mode, curve in curves.items():
         k = [levels.index(float(a)) for a in curve.acceleration[picked[mode]]]
         damping, frequency = curve.damping[picked[mode]], curve.frequency[picked[mode]]
-        ratio = np.abs(found.level_slip[0, k, mode - 1] / damping - 1)
-        assert np.all(ratio < found.level_error[0, k, mode - 1] + 2e-3)
+        ratio = np.abs(found.levels.slip[0, k, mode - 1] / damping - 1)
+        assert np.all(ratio < found.levels.error[0, k, mode - 1] + 2e-3)
         last = curve.acceleration[-1] * (0.55 if curve.code == "other-modes" else 1)
         alone = curve.acceleration[picked[mode]] <= last
         assert np.all(ratio[alone] < np.where(damping < 3e-3, 1e-2, 0.02)[alone])
         over.append(ratio[alone][damping[alone] < 3e-3].max(initial=0.0))
-        moved = np.abs(found.level_frequencies[0, k, mode - 1] - frequency)[alone]
+        moved = np.abs(found.levels.frequencies[0, k, mode - 1] - frequency)[alone]
         assert np.all(moved < 0.02 * np.abs(frequency - curve.linear_frequency)[alone] + 1e-7 * frequency[alone])
         assert np.all((moved / frequency[alone])[damping[alone] < 0.025] < 1e-3)
     assert curves[1].damping.max() > 0.035

@@ -34,6 +34,7 @@ from faying.output.figures import sweep
 from faying.result import Receptance, backbone, difference, vibration
 from faying.result.backbone import QuasiStaticCheck
 from faying.result.difference import compare_runs
+from faying.result.groups import Alternatives, Levels
 from faying.result.interval import Interval
 from faying.result.run_record import MeasuredComparison
 from faying.study.keys.uncertain import Input
@@ -138,6 +139,20 @@ def measured_points():
     )
 
 
+def other_law(frequencies):
+    """JK beside the law of a result, without loss; frequencies (1, load, mode) [Hz]."""
+    share = np.zeros(frequencies.shape[:2])
+    return Alternatives(
+        names=("JK",),
+        frequencies=frequencies,
+        loss_factors=np.full(frequencies.shape, np.nan),
+        above_range_frequencies=frequencies,
+        outside_share=share,
+        above_range_share=share,
+        reach=np.array([1e8]),
+    )
+
+
 @cache
 def result():
     """Two boxes with all that a result can have."""
@@ -154,20 +169,17 @@ def result():
         low=0.97 * f,
         high=1.01 * f,
         vibrations=tuple(shaken(load) for load in (5e3, 8e3)),
-        interval_best=interval.best,
-        interval_low=interval.low,
-        interval_high=interval.high,
-        interval_offsets=ends,
-        interval_sources=SOURCES,
-        levels=np.array([0.1, 1.0, 10.0]),
-        level_frequencies=np.repeat(f[:, None], 3, axis=1),
-        level_damping=damping,
-        level_low=0.6 * damping,
-        level_high=2 * damping,
-        level_slip=damping - 9e-4,
-        level_error=0 * damping,
-        alternatives=("JK",),
-        alternative_frequencies=1.01 * f[None],
+        interval=interval,
+        levels=Levels(
+            accelerations=np.array([0.1, 1.0, 10.0]),
+            frequencies=np.repeat(f[:, None], 3, axis=1),
+            damping=damping,
+            low=0.6 * damping,
+            high=2 * damping,
+            slip=damping - 9e-4,
+            error=0 * damping,
+        ),
+        alternatives=other_law(1.01 * f[None]),
         comparison=MeasuredComparison(
             source="hammer test",
             frequencies=test,

@@ -38,11 +38,23 @@ def small_result(loads=(2e3, 8e3), joints=("a", "b"), bolts=("left", "right"), *
         "outline": np.eye(3),
         "triangles": np.array([[0, 1, 2]]),
         "shapes": np.ones((count, 2, 3, 3)),
+        "part_masses": np.array([1.0]),
+        "slip": 0 * q,
+        "gap": np.zeros(points),
+        "bolt_seats": np.zeros((len(bolts), 2, 3)),
+        "bolt_diameters": np.full(len(bolts), np.nan),
+        "bolt_extents": np.tile([0.01, 0.02], (len(bolts), 1)),
+        "parts": ("part",),
+        "faces": (),
+        "joint_faces": tuple((f"{name}.first", f"{name}.second") for name in joints),
         "joints": joints,
         "bolts": bolts,
         "unknowns": 90,
         "solver": "none",
         "surfaces": tuple({"D": 2.4} for _ in joints),
-        "laws": tuple({"name": "JK", "cutoff": 0.01} for _ in joints),
+        "laws": tuple({"name": "JK", "cutoff": 0.01, "greatest_pressure [Pa]": 1e9} for _ in joints),
     }
-    return Result(**(given | changes))
+    given |= changes
+    none = np.zeros(len(given["triangles"]), dtype=int)
+    follow = {"shapes_imaginary": 0 * given["shapes"], "part_of_triangle": none, "face_of_triangle": none - 1}
+    return Result(**(follow | given))

@@ -60,7 +60,9 @@ def test_names_of_any_kind_reach_files_and_figures(tmp_path):
     q = np.ones((2, 6))
     places = {"points": np.concatenate([grid, grid + 1]), "weights": q[0], "joint_of_point": np.repeat([0, 1], 3)}
     names = (r"$\frac{1}{0$", "Fläche µ")
-    found = small_result(title="Träger <b>&", joints=names, pressure=q, k_n=q, k_t=q, **places)
+    found = small_result(
+        title="Träger <b>&", joints=names, pressure=q, k_n=q, k_t=q, slip=0 * q, gap=0 * q[0], **places
+    )
     made = report.write(found, tmp_path)
     assert Result.load(tmp_path / "result.nc") == found
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
@@ -155,7 +157,8 @@ def test_damping_is_a_sentence_where_slip_adds_less_than_a_tenth_to_what_is_at_r
     found, slight = rich(), np.array([1e-5, 2e-5, 9e-5]) * np.ones((2, 3, 3))
     for factor, sentence in ((1.0, True), (1.2, False)):
         slip = factor * slight
-        some = replace(found, level_slip=slip, level_damping=1e-3 + slip, level_low=3e-4 + slip, level_high=3e-3 + slip)
+        damping = {"damping": 1e-3 + slip, "low": 3e-4 + slip, "high": 3e-3 + slip}
+        some = replace(found, levels=replace(found.levels, slip=slip, **damping))
         assert answer.damping_line(some).startswith("Damping at 1 m/s2: 0.031 .. 0.1 .. 0.3 %") == sentence
         assert any("damping" in head for head in answer.answer(some)[0]) != sentence
 

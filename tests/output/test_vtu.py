@@ -94,12 +94,12 @@ def test_facts_of_the_load_stand_in_the_file(result, files):
     assert types["offsets"][-1] == len(types["connectivity"])
 
 
-def test_a_result_without_faces_has_its_surface_alone(tmp_path):
-    """Of an earlier version: no map, but the shapes."""
-    _, first, _ = small_result().save_vtu(tmp_path / "old.vtu")
+def test_a_result_whose_joints_have_no_triangles_has_its_surface_alone(tmp_path):
+    """No map, but the shapes."""
+    _, first, _ = small_result().save_vtu(tmp_path / "bare.vtu")
     read = meshio.read(first)
     assert len(read.points) == 3
-    assert set(read.point_data) == {"mode 1 real", "mode 2 real"}
+    assert set(read.point_data) == {f"mode {mode} {part}" for mode in (1, 2) for part in ("real", "imaginary")}
 
 
 def test_what_cannot_be_written_is_refused(result, tmp_path):

@@ -94,7 +94,7 @@ def result(test, predicted, low=None, high=None, modes=None):
         loads=np.arange(1, len(test) + 1) * 1e3,
         bonded=np.full(test.shape[1], 200.0),
         free=np.full(test.shape[1], 50.0),
-        interval_ends=None if low is None else np.stack([low, high]),
+        interval=None if low is None else SimpleNamespace(ends=np.stack([low, high])),
     )
 
 
@@ -139,7 +139,8 @@ def test_bars_of_a_comparison_are_the_intervals_wherever_the_points_lie():
     from tests.helpers.figures import result
 
     found = result()
-    shifted = replace(found, interval_low=1.05 * found.frequencies, interval_high=1.1 * found.frequencies)
+    ends = {"low": 1.05 * found.frequencies, "high": 1.1 * found.frequencies}
+    shifted = replace(found, interval=replace(found.interval, **ends))
     ax = comparison(Figure().subplots(), shifted)
     c = shifted.comparison
     for row, bars in enumerate(ax.collections):

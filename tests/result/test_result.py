@@ -4,6 +4,7 @@ import numpy as np
 
 from faying.joint.attachments import PointMass, Support
 from faying.result import Result
+from faying.result.groups import Alternatives
 from tests.helpers.results import small_result
 from tests.helpers.scenes import two_boxes
 
@@ -11,16 +12,18 @@ from tests.helpers.scenes import two_boxes
 def test_names_of_other_laws_are_read_as_they_were_given_and_written_again(tmp_path):
     two = np.ones((2, 2, 2))
     written = small_result(
-        alternatives=("JK", "hollow"),
-        alternative_frequencies=two,
-        alternative_loss_factors=two,
-        alternative_above_range_frequencies=two,
-        alternative_outside_share=two[0],
-        alternative_above_range_share=two[0],
-        alternative_reach=two[0, 0],
+        alternatives=Alternatives(
+            names=("JK", "hollow"),
+            frequencies=two,
+            loss_factors=two,
+            above_range_frequencies=two,
+            outside_share=two[0],
+            above_range_share=two[0],
+            reach=two[0, 0],
+        ),
     )
     read = Result.load(written.save(tmp_path / "result.nc"))
-    assert read.alternatives == ("JK", "hollow")
+    assert read.alternatives.names == ("JK", "hollow")
     assert Result.load(read.save(tmp_path / "again.nc")) == written
 
 
@@ -33,11 +36,3 @@ def test_what_the_structure_is_made_of_is_read_as_it_was_written(tmp_path):
     assert read == written
     assert read.supports == written.supports
     assert read.masses[0].point == (0.1, 0.0, 0.0)
-
-
-def test_a_file_of_an_earlier_version_says_nothing_of_parts_and_faces(tmp_path):
-    """Such files hold no such variable and attribute, as those of results made by hand."""
-    read = Result.load(small_result().save(tmp_path / "result.nc"))
-    assert read.shapes_imaginary is None
-    assert read.part_of_triangle is None
-    assert read.parts == read.joint_faces == read.supports == ()

@@ -73,9 +73,9 @@ def test_a_bracket_that_rocks_is_followed_to_where_its_foot_opens(tmp_path):
     path.write_text(text.replace("[modes]\n", '[modes]\nlevels = ["100 m/s^2", "200 m/s^2", "344 m/s^2"]\n'))
     result = faying.run(path)
     curve = faying.backbone(path, amplitude=(1.0, 500.0), rest_damping=0.0)
-    frequency, slip = curve.at_acceleration(result.levels)
-    assert result.level_frequencies[0, :, 0] == pytest.approx(frequency, rel=1e-2)
-    assert np.all(np.abs(result.level_slip[0, :, 0] / slip - 1) < np.maximum(result.level_error[0, :, 0], 0.1))
+    frequency, slip = curve.at_acceleration(result.levels.accelerations)
+    assert result.levels.frequencies[0, :, 0] == pytest.approx(frequency, rel=1e-2)
+    assert np.all(np.abs(result.levels.slip[0, :, 0] / slip - 1) < np.maximum(result.levels.error[0, :, 0], 0.1))
     (shaken,) = result.vibrations
     level = shaken.level[1, 0]
     assert 300 < level < 450

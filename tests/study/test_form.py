@@ -126,13 +126,13 @@ def assumed(coarse):
 
 
 def test_waves_are_assumed_where_nothing_is_said(coarse, assumed):
-    draws, loads, modes = assumed.wave_frequencies.shape
+    draws, loads, modes = assumed.waves.frequencies.shape
     assert (draws, loads, modes) == (4, 2, 4)
-    assert assumed.wave_rms == pytest.approx([ASSUMED.Wq])
-    assert assumed.wave_slopes == pytest.approx(
-        np.diff(assumed.wave_frequencies, axis=1)[:, 0] / np.diff(assumed.loads), abs=1e-9
+    assert assumed.waves.rms == pytest.approx([ASSUMED.Wq])
+    assert assumed.waves.slopes == pytest.approx(
+        np.diff(assumed.waves.frequencies, axis=1)[:, 0] / np.diff(assumed.loads), abs=1e-9
     )
-    assert len(np.unique(np.round(assumed.wave_frequencies[:, 0, 0], 3))) == 4
+    assert len(np.unique(np.round(assumed.waves.frequencies[:, 0, 0], 3))) == 4
     (note,) = [note for note in assumed.notes if note.code == "waves-assumed"]
     assert "the study gives no form of the faces" in note.text
     assert "flat faces" not in " ".join(assumed.warnings)
@@ -150,11 +150,11 @@ def test_a_draw_of_the_band_is_that_of_a_full_run(coarse, assumed):
     form = Form(waviness=replace(ASSUMED, seed=1))
     more = replace(coarse.modes, count=8)  # the draw follows modes of flat faces, which may be higher ones there
     full = run(replace(coarse, joints=(replace(coarse.joints[0], form=form),), modes=more))
-    assert are_among(assumed.wave_frequencies[1], full.frequencies, TOLERANCE)
+    assert are_among(assumed.waves.frequencies[1], full.frequencies, TOLERANCE)
     # the study has said which draw: the others make its interval
-    assert np.array_equal(full.wave_frequencies[1], full.frequencies)
+    assert np.array_equal(full.waves.frequencies[1], full.frequencies)
     # from another basis, made to an estimated error of 2e-4
-    assert all(are_among(*two, 1e-3) for two in zip(assumed.wave_frequencies, full.wave_frequencies, strict=True))
+    assert all(are_among(*two, 1e-3) for two in zip(assumed.waves.frequencies, full.waves.frequencies, strict=True))
     assert "waves-assumed" not in [note.code for note in full.notes]
 
 
@@ -163,13 +163,13 @@ def test_a_draw_of_the_band_is_that_of_a_full_run(coarse, assumed):
 )
 def test_a_form_that_is_given_has_no_waves(coarse, form):
     result = run(replace(coarse, joints=(replace(coarse.joints[0], form=form),)))
-    assert result.wave_frequencies is None
+    assert result.waves is None
     assert not [note for note in result.notes if note.code.startswith("waves")]
 
 
 @pytest.mark.slow
 def test_one_load_has_a_band_without_slopes(coarse):
     result = run(pulled(coarse, 2e3))
-    assert result.wave_slopes is None
-    assert result.wave_frequencies.shape == (4, 1, 4)
-    assert np.all(np.ptp(result.wave_frequencies[:, 0], axis=0) > 0)
+    assert result.waves.slopes is None
+    assert result.waves.frequencies.shape == (4, 1, 4)
+    assert np.all(np.ptp(result.waves.frequencies[:, 0], axis=0) > 0)

@@ -71,7 +71,7 @@ def test_both_engines_print_one_history(tmp_path):
     back = study(tmp_path, BACK, levels='["1 m/s^2"]')
     direct, again = (faying.run(back, engine=engine) for engine in ("direct", "reanalysis"))
     assert direct.frequencies == pytest.approx(again.frequencies, rel=1e-8)
-    assert direct.level_damping == pytest.approx(again.level_damping, rel=1e-2)
+    assert direct.levels.damping == pytest.approx(again.levels.damping, rel=1e-2)
 
 
 @pytest.mark.slow

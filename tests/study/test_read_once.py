@@ -41,7 +41,7 @@ def test_laws_beside_share_the_surface(reads):
     study = Study.read(EXAMPLE)
     alternatives = tuple(AlternativeChoice(name=law.model, law=law) for law in LAWS)
     result = run(replace(study, alternatives=alternatives))
-    assert result.alternatives == ("JK", "MB", "YK")
+    assert result.alternatives.names == ("JK", "MB", "YK")
     assert reads == [study.surface]
 
 

@@ -22,6 +22,8 @@ from faying.measured.model import FullResponse
 from faying.result.backbone import Backbone, QuasiStaticCheck
 from faying.result.bolts import BoltNumbers
 from faying.result.fields import declared
+from faying.result.groups import Alternatives, BondedAboveRange, Levels, WaveDraws
+from faying.result.interval import Interval
 from faying.result.result import Result
 from faying.result.run_record import MeasuredComparison, Receptance
 from faying.study.keys.varied import rooms
@@ -33,6 +35,11 @@ from faying_reference.study_keys import Key, keys
 
 GROUPS = {
     "result.nc": Result,
+    "interval, in Python": Interval,
+    "levels, in Python": Levels,
+    "waves, in Python": WaveDraws,
+    "above_range, in Python": BondedAboveRange,
+    "alternatives, in Python": Alternatives,
     "response": Receptance,
     "comparison": MeasuredComparison,
     "hammer": ModalComparison,

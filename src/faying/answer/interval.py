@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
@@ -31,6 +30,7 @@ from faying.form.waviness import ASSUMED_GAP, LaidWaves
 from faying.joint.joint_law import JointLaw
 from faying.notes import INCOMPLETE, Note, joint_names
 from faying.numerics.follow import same_group
+from faying.result.groups import WaveDraws
 from faying.result.interval import Interval
 from faying.result.run_record import preload_slope
 from faying.typing import Array
@@ -38,31 +38,6 @@ from faying.units import show
 
 DRAWS = 4
 MIN_DRAWS = 2  # that have a scatter
-
-
-@dataclass(frozen=True, kw_only=True)
-class WaveBand:
-    """Frequencies under several draws of waves.
-
-    seeds: of the d draws. frequencies [Hz] (d, loads, m); rms [m] (joints,): of the waves on each face; ends [m]
-    (joints, 2): shortest and longest wave that is drawn; NaN where a joint has none.
-    """
-
-    seeds: tuple[int, ...]
-    frequencies: Array
-    rms: Array
-    ends: Array
-
-    def fields(self, loads: Array) -> dict[str, Any]:
-        """Fields of the result; loads: preloads of the first bolt [N]."""
-        slopes = np.stack([preload_slope(values, loads) for values in self.frequencies])
-        return {
-            "wave_seeds": np.array(self.seeds),
-            "wave_frequencies": self.frequencies,
-            "wave_slopes": slopes if len(loads) > 1 else None,
-            "wave_rms": self.rms,
-            "wave_lengths": self.ends,
-        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,10 +83,12 @@ class Draws:
         pairs = zip(case.structure.joints, self.wavy, strict=True)
         return [joint.interface.gap if waves is None else waves.gap(seed) for joint, waves in pairs]
 
-    def band(self, states: Sequence[LoadedCase], found: Sequence[Array | NotConverged]) -> WaveBand | None:
+    def band(
+        self, loads: Array, states: Sequence[LoadedCase], found: Sequence[Array | NotConverged]
+    ) -> WaveDraws | None:
         """The frequencies of all draws that have an answer, from those of `drawn` [Hz] (loads, m).
 
-        None where nothing is drawn, or fewer than two draws have an answer.
+        loads: preloads of the first bolt [N]. None where nothing is drawn, or fewer than two draws have an answer.
         """
         if not any(self.wavy):
             return None
@@ -125,8 +102,14 @@ class Draws:
             for w in self.wavy
         ]
         rms = [np.nan if w is None else w.laid.waves.Wq for w in self.wavy]
-        return WaveBand(
-            seeds=tuple(rows), frequencies=np.stack(list(rows.values())), rms=np.array(rms), ends=np.array(ends)
+        frequencies = np.stack(list(rows.values()))
+        slopes = np.stack([preload_slope(values, loads) for values in frequencies]) if len(loads) > 1 else None
+        return WaveDraws(
+            seeds=np.array(list(rows)),
+            frequencies=frequencies,
+            slopes=slopes,
+            rms=np.array(rms),
+            lengths=np.array(ends),
         )
 
     def notes(self, case: Case) -> list[Note]:
@@ -172,14 +155,14 @@ class Joints:
         pairs: both ends of each thing about the first of these.
     """
 
-    band: WaveBand | None = None
+    band: WaveDraws | None = None
     medians: Sequence[tuple[Found | None, Found]] = ()
     pairs: Mapping[str, tuple[Found, Found]] = field(default_factory=dict)
 
 
 def intervals(
     case: Case, states: Sequence[LoadedCase], mesh: MeshError | None
-) -> tuple[WaveBand | None, Interval | None, list[Note]]:
+) -> tuple[WaveDraws | None, Interval | None, list[Note]]:
     """Draws of waves and the interval of every frequency, from states and from a small basis.
 
     Args:
@@ -213,7 +196,7 @@ def intervals(
     found = iter(frequencies_of(case, states, changes, after))
     of_waves, of_medians = ([next(found) for _ in some] for some in (waves, medians))
     pairs = {name: (next(found), next(found)) for name in ends}
-    band = draws.band(states, of_waves)
+    band = draws.band(case.loads, states, of_waves)
     of_joints = Joints(band=band, medians=list(zip(of_waves or (None,), of_medians, strict=True)), pairs=pairs)
     of_draws = [
         drawn if isinstance(drawn, NotConverged) else at for drawn, at in of_joints.medians if drawn is not None

@@ -1,7 +1,7 @@
 """From a study to its result."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from faying.answer.refine import refined, tolerance_of
 from faying.answer.tracks import compared, encounters, macs, shapes_of
 from faying.backbones.backbone import backbones_of, friction_of
 from faying.bolt.bolt import FittedBolt
-from faying.case.alternative import Alternative, alternative_fields, solve_alternative
+from faying.case.alternative import Alternative, of_alternatives, solve_alternative
 from faying.case.bounds import Bounds, bounds
 from faying.case.case import Case, Progress
 from faying.case.engine import engine_of
@@ -31,7 +31,8 @@ from faying.notes import Note
 from faying.numerics.follow import between_by_rank
 from faying.progress import Report
 from faying.result import BoltNumbers, MeasuredComparison, Receptance, Result
-from faying.result.run_record import DampedLevels
+from faying.result.fields import declared
+from faying.result.groups import BondedAboveRange, Levels
 from faying.result.vibration import VibrationResponse
 from faying.service.vibration import vibrations_of
 from faying.study.keys.varied import number_of
@@ -83,7 +84,7 @@ def run(
     del solver  # its basis and, below, the factorisation of the states: memory is short
     progress.begin("intervals and bolts")
     mesh = mesh_error(case, states) if study.modes.intervals else None
-    band, interval, more = intervals(case, states, mesh)
+    waves, interval, more = intervals(case, states, mesh)
     more += mesh_notes(study, mesh) if study.modes.intervals else []
     shapes = shapes_of(case, states)
     bolts, bolt_notes = _bolts(case, states, shapes)
@@ -94,13 +95,14 @@ def run(
     ends, notes = bounds(case)
     notes = [*notes, *falling(case, states), *against_exact_contact(case, states[0]), *more, *bolt_notes]
     notes += [note for one in vibrations for note in one.notes]
-    found = {} if band is None else band.fields(case.loads)
-    if interval is not None:
-        interval, names = interval.between(*ends), ("sources", "best", "low", "high", "offsets")
-        found |= {f"interval_{name}": getattr(interval, name) for name in names}
-        found["mesh_error"] = None if mesh is None else mesh.total
-    result = collect(case, states, shapes, ends, notes, alternatives)
-    result = replace(result, bolt_numbers=bolts, vibrations=tuple(vibrations), **found)
+    result = replace(
+        collect(case, states, shapes, ends, notes, alternatives),
+        waves=waves,
+        interval=None if interval is None else interval.between(*ends),
+        mesh_error=None if mesh is None or interval is None else mesh.total,
+        bolt_numbers=bolts,
+        vibrations=tuple(vibrations),
+    )
     if study.backbone is None:
         return result
     progress.begin(f"mode {study.backbone.mode} over amplitude")
@@ -167,14 +169,14 @@ def collect(
         rigid=rigid,
         mac=with_first,
         **_at_loads(states, lossless, bounds),
-        **_at_levels(states),
-        **_bonded_above_range(states, lossless),
+        levels=_at_levels(states),
+        above_range=_bonded_above_range(states, lossless),
         **_at_points(states),
         **_on_faces(structure, states),
         **_outline(structure, shapes, states),
         **_made_of(structure),
         **_dowels(structure, states),
-        **alternative_fields(alternatives, len(states), study.modes.count),
+        alternatives=of_alternatives(alternatives, len(states), study.modes.count),
         joints=tuple(j.name for j in structure.joints),
         bolts=tuple(bolt.name for bolt in study.bolts),
         unknowns=structure.mesh.unknowns,
@@ -238,14 +240,13 @@ def _at_loads(states: Sequence[LoadedCase], lossless: bool, bounds: Bounds) -> d
     }
 
 
-def _at_levels(states: Sequence[LoadedCase]) -> dict[str, Any]:
-    """Fields of the result that have a row for each level of acceleration; none where there are none."""
+def _at_levels(states: Sequence[LoadedCase]) -> Levels | None:
+    """What the states have at levels of acceleration; None where one of them has nothing."""
     found = [one for state in states if (one := state.levels) is not None]
     if len(found) < len(states):
-        return {}
-    names = [one.name for one in fields(DampedLevels) if one.name != "levels"]
-    stacked = {f"level_{name}": np.stack([getattr(one, name) for one in found]) for name in names}
-    return {"levels": found[0].levels, **stacked}
+        return None
+    of_loads = [name for name, meta in declared(Levels).items() if "load" in meta.dims]
+    return replace(found[0], **{name: np.concatenate([getattr(one, name) for one in found]) for name in of_loads})
 
 
 def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[LoadedCase]) -> dict[str, Any]:
@@ -342,15 +343,15 @@ def _joined(of_joints: Iterable[Array]) -> Array:
     return np.concatenate([np.zeros(0), *of_joints])
 
 
-def _bonded_above_range(states: Sequence[LoadedCase], lossless: bool) -> dict[str, Any]:
+def _bonded_above_range(states: Sequence[LoadedCase], lossless: bool) -> BondedAboveRange | None:
     """Frequencies and loss factors with what is beyond the end of a law bonded, where anything is at any load."""
     if all(s.above_range is None for s in states):
-        return {}
+        return None
     losses = [(s.above_range or s.damped).loss_factors for s in states]
-    return {
-        "above_range_frequencies": np.stack([s.bonded_frequencies for s in states]),
-        "above_range_loss_factors": np.stack([np.where(lossless, np.nan, loss) for loss in losses]),
-    }
+    return BondedAboveRange(
+        frequencies=np.stack([s.bonded_frequencies for s in states]),
+        loss_factors=np.stack([np.where(lossless, np.nan, loss) for loss in losses]),
+    )
 
 
 def _response(study: Study, states: Sequence[LoadedCase]) -> Receptance | None:

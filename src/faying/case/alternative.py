@@ -11,6 +11,7 @@ from faying.case.engine import engine_of
 from faying.case.solve import LoadedCase, released, solve
 from faying.errors import FayingError
 from faying.notes import OF_ALTERNATIVE, Note
+from faying.result.groups import Alternatives
 from faying.study.keys.alternative import AlternativeChoice
 from faying.study.study import Study
 
@@ -79,10 +80,10 @@ def changed(case: Case, choice: AlternativeChoice) -> Case:
     return replace(case, study=study, structure=structure, surfaces=surfaces, hammer=None, test_points=None, notes=())
 
 
-def alternative_fields(alternatives: Sequence[Alternative], loads: int, modes: int) -> dict[str, Any]:
-    """Fields of the result for the other laws, NaN where one has no answer; none without any."""
+def of_alternatives(alternatives: Sequence[Alternative], loads: int, modes: int) -> Alternatives | None:
+    """What the result has of the other laws, NaN where one has no answer; None without any."""
     if not alternatives:
-        return {}
+        return None
     nothing, alone = np.full((loads, modes), np.nan), np.full(loads, np.nan)
     rows: dict[str, list[Any]] = {}
     for other in alternatives:
@@ -97,6 +98,6 @@ def alternative_fields(alternatives: Sequence[Alternative], loads: int, modes: i
             "reach": min((joint.law.model.greatest_pressure for joint in joints), default=np.nan),
         }
         for name, value in found.items():
-            rows.setdefault(f"alternative_{name}", []).append(value)
+            rows.setdefault(name, []).append(value)
     stacked = {name: np.stack(values) for name, values in rows.items()}
-    return {"alternatives": tuple(other.name for other in alternatives), **stacked}
+    return Alternatives(names=tuple(other.name for other in alternatives), **stacked)

@@ -12,7 +12,7 @@ from faying.joint.modal import Vibration
 from faying.microslip.levels import SPRINGS, AtLevels, cut_laws, level_basis, level_model
 from faying.microslip.microslip import Microslip
 from faying.notes import Note
-from faying.result.run_record import DampedLevels
+from faying.result.groups import Levels
 from faying.typing import Array
 
 # coefficient of friction of faces of which nothing is said: 5 %, median and 95 % of a lognormal. Handbooks have 0.1 to
@@ -26,7 +26,7 @@ SLIGHT = 0.1  # of the spread at rest: slip below it moves the low end by 0.005 
 SPRINGS_AT_ENDS = 12
 
 
-def level_damping(case: Case, preload: PreloadState, found: Vibration) -> DampedLevels | None:
+def level_damping(case: Case, preload: PreloadState, found: Vibration) -> Levels | None:
     """Damping at the levels of a case under one preload.
 
     Args:
@@ -35,7 +35,7 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> Damped
         found: its modes at rest; a loss that the laws predict counts as damping at rest, else that has its prior.
 
     Returns:
-        None where no level is asked for, or where a law has no stiffness that slips.
+        With one load; None where no level is asked for, or where a law has no stiffness that slips.
     """
     structure, choice = case.structure, case.study.modes
     # springs per node do not slip
@@ -62,14 +62,14 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> Damped
         # where the least friction has no answer the greatest damping is not known
         least, most = np.fmin(slip, np.fmin(*ends)), np.maximum(slip, np.maximum(*ends))
     # friction and rest are independent: the squares of their distances add, apart for each side
-    return DampedLevels(
-        levels=np.array(choice.levels),
-        frequencies=middle.frequencies * moved,
-        damping=slip + rest[1],
-        low=slip + rest[1] - np.hypot(slip - least, rest[1] - rest[0]),
-        high=slip + rest[1] + np.hypot(most - slip, rest[2] - rest[1]),
-        slip=slip,
-        error=middle.error,
+    return Levels(
+        accelerations=np.array(choice.levels),
+        frequencies=(middle.frequencies * moved)[None],
+        damping=(slip + rest[1])[None],
+        low=(slip + rest[1] - np.hypot(slip - least, rest[1] - rest[0]))[None],
+        high=(slip + rest[1] + np.hypot(most - slip, rest[2] - rest[1]))[None],
+        slip=slip[None],
+        error=middle.error[None],
     )
 
 
@@ -120,7 +120,7 @@ def _why_none(case: Case) -> str:
     )
 
 
-def level_notes(case: Case, found: Sequence[DampedLevels | None], lossless: bool) -> list[Note]:
+def level_notes(case: Case, found: Sequence[Levels | None], lossless: bool) -> list[Note]:
     """What is assumed of friction and of rest."""
     if not found or not case.study.modes.levels or not case.structure.joints:
         return []
@@ -135,9 +135,9 @@ def level_notes(case: Case, found: Sequence[DampedLevels | None], lossless: bool
     return [*notes, Note(code="level-damping", text=text)]
 
 
-def _unanswered(case: Case, found: Sequence[DampedLevels]) -> list[Note]:
+def _unanswered(case: Case, found: Sequence[Levels]) -> list[Note]:
     """Which modes have no damping, or no upper end of it, at which levels."""
-    missing = np.argwhere(np.any([np.isnan(one.high) for one in found], axis=0))
+    missing = np.argwhere(np.any([np.isnan(one.high[0]) for one in found], axis=0))
     if not len(missing):
         return []
     where = ", ".join(f"mode {k + 1} at {case.study.modes.levels[i]:g} m/s2" for i, k in missing)

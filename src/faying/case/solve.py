@@ -20,7 +20,7 @@ from faying.notes import Note
 from faying.numerics.damped import DampedModes
 from faying.numerics.modes import Modes
 from faying.numerics.solve import Released
-from faying.result.run_record import DampedLevels
+from faying.result.groups import Levels
 from faying.typing import Array, Mask
 
 
@@ -53,7 +53,7 @@ class LoadedCase:
     notes: tuple[Note, ...]
     outside_share: float
     above_range_share: float
-    levels: DampedLevels | None = None
+    levels: Levels | None = None
     ends: Mapping[str, Pair] | None = None
 
     @property

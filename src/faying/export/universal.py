@@ -88,10 +88,10 @@ def _at_test(result: Result, folder: Path) -> list[Path]:
 def _losses(result: Result) -> Array:
     """Loss factors at the greatest preload; where the laws give none, twice the damping at the middle level, or 0."""
     losses: Array = result.loss_factors[-1]
-    if result.level_damping is None:
+    if result.levels is None:
         return np.nan_to_num(losses)
-    middle = result.level_damping.shape[1] // 2
-    return np.asarray(np.where(np.isnan(losses), 2 * result.level_damping[-1, middle], losses))
+    middle = len(result.levels.accelerations) // 2
+    return np.asarray(np.where(np.isnan(losses), 2 * result.levels.damping[-1, middle], losses))
 
 
 def _modes(frequencies: Array, losses: Array, shapes: Array, positions: Mapping[int, tuple[float, ...]]) -> ModeSet:

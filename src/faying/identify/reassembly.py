@@ -248,8 +248,8 @@ def _collected(work: Assembler, rows: Rows, result: Result, seed: int) -> Assemb
         left=rows["left"][:count],
         orders=1 + drawn.orders,
         shifts=drawn.shifts,
-        low=result.interval_low,
-        high=result.interval_high,
+        low=None if result.interval is None else result.interval.low,
+        high=None if result.interval is None else result.interval.high,
         reasons=dict(by_reason(reasons)),
         provenance=provenance(study),
     )

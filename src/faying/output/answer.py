@@ -6,8 +6,9 @@ from faying.case.scatter import SCATTER
 from faying.notes import INCOMPLETE
 from faying.output.table import Rows, by_mode, damping_at
 from faying.result import Result
+from faying.result.groups import Levels
 from faying.result.interval import Interval
-from faying.result.run_record import DampedLevels, preload_slope
+from faying.result.run_record import preload_slope
 from faying.result.score import Score
 from faying.result.shape_names import part_and_axis
 from faying.text import or_dash
@@ -27,13 +28,13 @@ def answer(result: Result) -> Rows:
     interval = result.interval
     if interval is None:
         return []
-    several, damped = len(result.loads) > 1, None if damping_line(result) else result.at_levels
+    several, damped = len(result.loads) > 1, None if damping_line(result) else result.levels
     heads = ["mode", "moves most", f"{result.load_names[-1]} [Hz]", "5 to 95 %", "as modelled"]
     if any(note.code == INCOMPLETE for note in result.notes):
         heads[3] += ", incomplete"
     heads += ["Hz/kN"] * several
     middle = 0 if damped is None else _middle(damped)
-    heads += [] if damped is None else [f"damping, {damped.levels[middle]:g} m/s2 [%]"]
+    heads += [] if damped is None else [f"damping, {damped.accelerations[middle]:g} m/s2 [%]"]
     rows: Rows = [heads]
     slopes = 1e3 * preload_slope(result.frequencies, result.loads) if several else np.zeros(result.frequencies.shape[1])
     ends = np.stack([interval.low[-1], interval.best[-1], interval.high[-1]], axis=1)
@@ -46,14 +47,14 @@ def answer(result: Result) -> Rows:
     return rows
 
 
-def _middle(damped: DampedLevels) -> int:
+def _middle(damped: Levels) -> int:
     """The level that the answer shows."""
-    return len(damped.levels) // 2
+    return len(damped.accelerations) // 2
 
 
 def damping_line(result: Result) -> str:
     """Damping in a sentence where it is that at rest, and one for all modes; "" where it is not."""
-    damped = result.at_levels
+    damped = result.levels
     if damped is None:
         return ""
     level = _middle(damped)
@@ -62,8 +63,8 @@ def damping_line(result: Result) -> str:
         return ""
     values = damping_at(damped, level, int(np.argmin(damped.slip[-1, level])))
     return (
-        f"Damping at {damped.levels[level]:g} m/s2: {values} %, in every mode; slip of the joints adds less than a "
-        "tenth of that at rest."
+        f"Damping at {damped.accelerations[level]:g} m/s2: {values} %, in every mode; slip of the joints adds less "
+        "than a tenth of that at rest."
     )
 
 

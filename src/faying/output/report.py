@@ -252,7 +252,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
             draw=lambda result: structure.faces(result, "slip"),
             caption="Tangential displacement of the second face against the first while the bolts are tightened. Grey: "
             "open.",
-            applies=lambda result: result.slip is not None and bool((result.slip > 0).any()),
+            applies=lambda result: bool((result.slip > 0).any()),
         ),
         ReportFigure(
             name="law",
@@ -278,7 +278,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
             draw=interval_figure.damping_levels,
             caption="Damping ratio of each mode at levels of acceleration, at the greatest preload: slip in the joints "
             "and the damping at rest.",
-            applies=lambda result: result.at_levels is not None,
+            applies=lambda result: result.levels is not None,
         ),
         "laws",
         "beyond",

@@ -12,7 +12,8 @@ from faying.output.terminal import text as text
 from faying.result import Result
 from faying.result.backbone import Backbone
 from faying.result.difference import of_joint
-from faying.result.run_record import DampedLevels, preload_slope
+from faying.result.groups import Levels
+from faying.result.run_record import preload_slope
 from faying.text import in_columns, or_dash
 from faying.typing import Array
 from faying.units import show
@@ -62,17 +63,17 @@ def ranges(result: Result) -> Rows:
 
 def damping(result: Result) -> Rows:
     """One row per mode: damping at each level at the greatest preload, with both ends; empty where there is none."""
-    found = result.at_levels
+    found = result.levels
     if found is None:
         return []
-    heads = [*(f"{level:g} m/s2 [%]" for level in found.levels), "change of f [%]"]
+    heads = [*(f"{level:g} m/s2 [%]" for level in found.accelerations), "change of f [%]"]
     change = 100 * (found.frequencies[-1, -1] / result.frequencies[-1] - 1)
     words = ["-" if isnan(one) else f"{one:+.3f}" if abs(one) >= MIN_CHANGE else "0" for one in change]
-    levels = range(len(found.levels))
+    levels = range(len(found.accelerations))
     return by_mode(heads, ([*(damping_at(found, k, j) for k in levels), word] for j, word in enumerate(words)))
 
 
-def damping_at(found: DampedLevels, level: int, mode: int) -> str:
+def damping_at(found: Levels, level: int, mode: int) -> str:
     """Low, median and high damping ratio [%] of a mode at one level, at the greatest preload."""
     return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in (found.low, found.damping, found.high)).replace(
         "nan", "-"
@@ -86,10 +87,10 @@ def _five(value: float) -> str:
 
 def above_range(result: Result) -> Rows:
     """One row per mode: constant stiffness above the end of the law, and bonded there; empty where none is above."""
-    if result.above_range_frequencies is None or result.above_range_loss_factors is None:
+    if result.above_range is None:
         return []
-    ends = (result.frequencies, result.above_range_frequencies)
-    losses = (result.loss_factors, result.above_range_loss_factors)
+    ends = (result.frequencies, result.above_range.frequencies)
+    losses = (result.loss_factors, result.above_range.loss_factors)
 
     def cell(low: float, high: float, least: float, most: float) -> str:
         loss = "" if np.isnan(least + most) else f" ({least:.1e} .. {most:.1e})"
@@ -108,26 +109,20 @@ def laws(result: Result) -> Rows:
     Of the modes that differ most between the laws the frequency with its loss factor; two frequencies where it matters
     whether what is above the end has a constant stiffness or is bonded.
     """
-    r = result
-    if (
-        r.alternative_frequencies is None
-        or r.alternative_loss_factors is None
-        or r.alternative_above_range_frequencies is None
-    ):
+    r, others = result, result.alternatives
+    if others is None:
         return []
-    if r.alternative_reach is None or r.alternative_above_range_share is None or r.alternative_outside_share is None:
-        return []
-    own = r.frequencies[-1] if r.above_range_frequencies is None else r.above_range_frequencies[-1]
-    constant = np.stack([r.frequencies[-1], *r.alternative_frequencies[:, -1]])
-    bonded = np.stack([own, *r.alternative_above_range_frequencies[:, -1]])
-    losses = np.stack([r.loss_factors[-1], *r.alternative_loss_factors[:, -1]])
-    ends = [min(float(law["greatest_pressure [Pa]"]) for law in r.laws), *r.alternative_reach]
-    above = [r.above_range_share[-1], *r.alternative_above_range_share[:, -1]]
-    outside = [r.outside_share[-1], *r.alternative_outside_share[:, -1]]
+    own = r.frequencies[-1] if r.above_range is None else r.above_range.frequencies[-1]
+    constant = np.stack([r.frequencies[-1], *others.frequencies[:, -1]])
+    bonded = np.stack([own, *others.above_range_frequencies[:, -1]])
+    losses = np.stack([r.loss_factors[-1], *others.loss_factors[:, -1]])
+    ends = [min(float(law["greatest_pressure [Pa]"]) for law in r.laws), *others.reach]
+    above = [r.above_range_share[-1], *others.above_range_share[:, -1]]
+    outside = [r.outside_share[-1], *others.outside_share[:, -1]]
     spread = np.nanmax(bonded, axis=0) / np.nanmin(constant, axis=0)
     shown = np.sort(np.argsort(-spread)[:SHOWN])
     rows: Rows = [["law", "ends [MPa]", "beyond", "outside", *(f"mode {j + 1} [Hz] (loss)" for j in shown)]]
-    names = (" + ".join(dict.fromkeys(str(law["name"]) for law in r.laws)), *r.alternatives)
+    names = (" + ".join(dict.fromkeys(str(law["name"]) for law in r.laws)), *others.names)
     for k, name in enumerate(names):
         if np.isnan(ends[k]) or np.isnan(constant[k]).all():
             rows.append([name, *["-"] * (3 + len(shown))])
@@ -143,13 +138,14 @@ def laws(result: Result) -> Rows:
 
 def waves(result: Result) -> Rows:
     """One row per mode: least, median and greatest over the draws of waves, at each load and of d f/d preload."""
-    if result.wave_frequencies is None:
+    drawn = result.waves
+    if drawn is None:
         return []
     heads = [f"{load} [Hz]" for load in result.load_names]
-    cells = [[_over_draws(values, ".1f") for values in mode.T] for mode in np.moveaxis(result.wave_frequencies, 2, 0)]
-    if result.wave_slopes is not None:
+    cells = [[_over_draws(values, ".1f") for values in mode.T] for mode in np.moveaxis(drawn.frequencies, 2, 0)]
+    if drawn.slopes is not None:
         heads.append("d f/d preload [Hz/kN]")
-        cells = [[*row, _over_draws(1e3 * s, "+.2f")] for row, s in zip(cells, result.wave_slopes.T, strict=True)]
+        cells = [[*row, _over_draws(1e3 * s, "+.2f")] for row, s in zip(cells, drawn.slopes.T, strict=True)]
     return by_mode(heads, cells)
 
 
@@ -159,14 +155,11 @@ def _over_draws(values: Array, form: str) -> str:
 
 def waves_head(result: Result) -> str:
     """Which waves the draws have, as far as the joints have the same; empty where none are drawn."""
-    if result.wave_rms is None or result.wave_lengths is None or result.wave_seeds is None:
+    if result.waves is None or not (drawn := np.isfinite(result.waves.rms)).any():
         return ""
-    drawn = np.isfinite(result.wave_rms)
-    if not drawn.any():
-        return ""
-    rms = _one_or_ends(1e6 * result.wave_rms[drawn], "um")
-    low, high = (_one_or_ends(1e3 * ends, "mm") for ends in result.wave_lengths[drawn].T)
-    return f"waves from {low} to {high}, rms {rms} on each face, {len(result.wave_seeds)} draws"
+    rms = _one_or_ends(1e6 * result.waves.rms[drawn], "um")
+    low, high = (_one_or_ends(1e3 * ends, "mm") for ends in result.waves.lengths[drawn].T)
+    return f"waves from {low} to {high}, rms {rms} on each face, {len(result.waves.seeds)} draws"
 
 
 def _one_or_ends(values: Array, unit: str) -> str:
@@ -182,7 +175,8 @@ def comparison(result: Result) -> Rows:
     count = c.frequencies.shape[1]
     rows: Rows = [["preload", "source", *(f"mode {j + 1}" for j in range(count))]]
     theirs = [] if c.published is None else [(c.published_name, c.published)]
-    others = [] if c.alternatives is None else list(zip(result.alternatives, c.alternatives, strict=True))
+    names = () if result.alternatives is None else result.alternatives.names
+    others = [] if c.alternatives is None else list(zip(names, c.alternatives, strict=True))
     ours = [*others, ("Faying", c.predicted)]
     for i, load in enumerate(result.load_names):
         rows.append([load, f"{c.reference} [Hz]", *(f"{f:.1f}" for f in c.frequencies[i])])
@@ -226,9 +220,7 @@ def joints(result: Result) -> Rows:
 
 
 def parts(result: Result) -> Rows:
-    """One row per part with its mass, then point masses and the sum; empty where no mass is known."""
-    if result.part_masses is None:
-        return []
+    """One row per part with its mass, then point masses and the sum."""
     rows = [(name, float(mass)) for name, mass in zip(result.parts, result.part_masses, strict=True)]
     rows += [(f"point mass {k}", mass.mass) for k, mass in enumerate(result.masses, start=1)]
     rows.append(("sum, without bolts that are not meshed", sum(mass for _, mass in rows)))

@@ -276,8 +276,8 @@ def differences(found: RunDifference, names: tuple[str, str] = ("first run", "se
         look = {"color": colour(side), "ms": 4, "ls": "none", "label": name}
         run, load = (found.first, found.second)[side], found.loads[side]
         axes[0].plot(places + shift, 100 * (found.frequencies[side] / base - 1), MARKS[side], **look)
-        if run.interval_ends is not None:
-            ends = 100 * (run.interval_ends[:, load, found.modes[:, side]] / base - 1)
+        if run.interval is not None:
+            ends = 100 * (run.interval.ends[:, load, found.modes[:, side]] / base - 1)
             axes[0].vlines(places + shift, *ends, color=colour(side), lw=1.0)
         axes[1].plot(places + shift, found.loss_factors[side], MARKS[side], **look)
         pressure, share = carried(run, load)

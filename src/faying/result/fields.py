@@ -2,7 +2,7 @@
 
 import json
 import types
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, Union, cast, get_args, get_origin, get_type_hints
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 Kind = TypeVar("Kind")
 KEY = "variable"
+GROUP = "group"
 MAX_ARRAYS = 10  # that a summary has a line for
 RESULT_FILE = "result.nc"  # in the folder of a run
 RECORD = "faying_record"  # attribute of a file: what it holds
@@ -109,15 +110,17 @@ def optional(dims: str, unit: str, long_name: str, path: str = "", **more: Any) 
     return variable(dims, unit, long_name, path, default=None, **more)
 
 
-class Recorded(Summary):
-    """What a dataclass of declared arrays does: they are checked, frozen, saved, loaded and handed to xarray.
+def group(prefix: str) -> Any:
+    """Declare a field that is a dataclass of `Arrays`, or None: a group of quantities that a study may ask for.
 
-    KIND: what messages call it, which the file says as well; COMMAND: what writes one. Two of them are equal part by
-    part.
+    A file, JSON and tables have its arrays as if they stood in its owner. prefix: of their names in JSON, and of its
+    texts in a file.
     """
+    return field(default=None, metadata={GROUP: prefix})
 
-    KIND: ClassVar[str] = "record"
-    COMMAND: ClassVar[str] = ""
+
+class Arrays(Summary):
+    """What a dataclass of declared arrays does: they are checked and frozen. Two are equal part by part."""
 
     def __post_init__(self) -> None:
         for name, meta in declared(type(self)).items():
@@ -139,6 +142,16 @@ class Recorded(Summary):
         there = [(name, meta) for name, meta in declared(type(self)).items() if getattr(self, name) is not None]
         rows = {name: f"({', '.join(meta.dims)}) [{meta.unit}]" for name, meta in there[:MAX_ARRAYS]}
         return type(self).__name__, rows
+
+
+class Recorded(Arrays):
+    """Declared arrays that are saved, loaded and handed to xarray.
+
+    KIND: what messages call it, which the file says as well; COMMAND: what writes one.
+    """
+
+    KIND: ClassVar[str] = "record"
+    COMMAND: ClassVar[str] = ""
 
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
@@ -261,6 +274,16 @@ def declared(kind: Any) -> dict[str, RecordedQuantity]:
     return {f.name: f.metadata[KEY] for f in fields(kind) if KEY in f.metadata}
 
 
+def quantities(value: Any) -> Iterator[tuple[str, RecordedQuantity, Any]]:
+    """Name, declaration and values of the array fields that are there, those of its groups with their prefix."""
+    for f in fields(value):
+        item = getattr(value, f.name)
+        if item is not None and KEY in f.metadata:
+            yield f.name, f.metadata[KEY], item
+        elif item is not None and GROUP in f.metadata:
+            yield from ((f"{f.metadata[GROUP]}_{name}", meta, array) for name, meta, array in quantities(item))
+
+
 def listed(values: Any) -> Any:
     """Arrays as nested lists for JSON, None in place of NaN."""
     array = np.asarray(values)
@@ -277,9 +300,9 @@ def in_units(value: Any, *, without: Collection[str] = ()) -> dict[str, Any]:
     Left out are fields that are None and those with a dimension of `without`.
     """
     return {
-        name: {"unit": meta.unit, "values": listed(getattr(value, name))}
-        for name, meta in declared(type(value)).items()
-        if getattr(value, name) is not None and not set(without) & set(meta.dims)
+        name: {"unit": meta.unit, "values": listed(array)}
+        for name, meta, array in quantities(value)
+        if not set(without) & set(meta.dims)
     }
 
 
@@ -304,6 +327,12 @@ def to_group(value: Any) -> Group:
             for k, part in enumerate(item):
                 dims = tuple(f"{f.name}_{k}_{j}" for j in range(part.ndim))
                 variables[""][f"{f.name}.{k}"] = Variable(dims=dims, values=part)
+        elif GROUP in f.metadata:
+            of_group = to_group(item)
+            variables[""] |= of_group.variables
+            attributes |= {f"{f.metadata[GROUP]}_{name}": one for name, one in of_group.attributes.items()}
+            for name, own in of_group.groups.items():
+                variables[name] = {**variables.get(name, {}), **own.variables}
         elif is_dataclass(item):
             groups[f.name] = to_group(item)
         elif _some_of(Recorded, item):
@@ -381,6 +410,8 @@ def from_group(kind: type[Kind], group: Group) -> Kind:
         inner = group.groups.get(meta.group, Group()) if meta is not None and meta.group else group
         if meta is not None and (meta.name or name) in inner.variables:
             given[name] = inner.variables[meta.name or name].values.astype(meta.dtype)
+        elif GROUP in f.metadata:
+            given[name] = _group_of(cast(Any, hint), f.metadata[GROUP], group)
         elif meta is None and name in group.variables and name not in group.attributes:  # else labels of its name
             values = group.variables[name].values
             truth = "bool" in str(hint) and values.dtype.kind == "i"  # written as small integers
@@ -408,6 +439,17 @@ def from_group(kind: type[Kind], group: Group) -> Kind:
                 raise ReadError(f"it lacks {meta.name or name if meta is not None else name!r}{where}")
             given[name] = None
     return kind(**given)
+
+
+def _group_of(kind: Any, prefix: str, owner: Group) -> Any:
+    """A group of quantities from the tree of its owner; None where that has nothing of it."""
+    found = declared(kind)
+    if not any((one.name or name) in owner.groups.get(one.group, Group()).variables for name, one in found.items()):
+        return None
+    own = {
+        name.removeprefix(f"{prefix}_"): one for name, one in owner.attributes.items() if name.startswith(f"{prefix}_")
+    }
+    return from_group(kind, replace(owner, attributes=own))
 
 
 def _without_none(hint: Any) -> Any:

@@ -43,7 +43,7 @@ def face_map(ax: Any, result: RunRecord, field: str, load: int = -1, joint: int 
     """Draw pressure or slip on one joint at one load, on its face at one scale, and return what a colour bar needs.
 
     The colours span all loads and joints; what is open stays pale, and a line marks the edge of contact. Values are
-    shaded over the elements, as `faying.fe.face_map` says; of a result of an earlier version, whose file has no faces,
+    shaded over the elements, as `faying.fe.face_map` says; where all triangles of the joint belong to other faces too,
     points are drawn.
     """
     here = result.joint_of_point == joint
@@ -130,8 +130,8 @@ def frequency_axes(result: RunRecord, modes: int, ax: Any = None) -> "list[Axes]
 def _against_preload(ax: Any, result: RunRecord, mode: int) -> None:
     """One mode: band, curve of the study, other laws, the test, and bonded faces where they lie near."""
     load, f = result.loads * 1e-3, result.frequencies[:, mode]
-    if result.interval_ends is not None:
-        ends = tuple(result.interval_ends[:, :, mode])
+    if result.interval is not None:
+        ends = tuple(result.interval.ends[:, :, mode])
         band(ax, load, *ends, label="5 to 95 %")
     elif result.low is not None and result.high is not None:
         ends = result.low[:, mode], result.high[:, mode]
@@ -144,9 +144,9 @@ def _against_preload(ax: Any, result: RunRecord, mode: int) -> None:
         ax.plot(load, f, ".:", color="black", ms=4, lw=1.0, label="as modelled")
     else:
         ax.plot(load, f, line, color=COLOURS[0], ms=3, label="as modelled")
-    for k, name in enumerate(result.alternatives):
-        if result.alternative_frequencies is not None:
-            of_law = result.alternative_frequencies[k, :, mode]
+    if (others := result.alternatives) is not None:
+        for k, name in enumerate(others.names):
+            of_law = others.frequencies[k, :, mode]
             ax.plot(load, of_law, ".--", color=colour(k + 2), ms=4, lw=1.0, label=plain(name))
     if (c := result.comparison) is not None:
         rows, columns = np.nonzero(c.modes == mode)
@@ -204,8 +204,8 @@ def comparison(ax: Any, result: RunRecord) -> Any:
         place = modes + (row - (len(result.loads) - 1) / 2) * 0.62 / len(result.loads)
         error = 100 * (c.predicted[row] / c.frequencies[row] - 1)
         ax.plot(place, error, "o", ms=4, color=shades[row], label=f"computed, {load_text(load)}")
-        if result.interval_ends is not None:
-            here = np.where(c.modes[row] < 0, np.nan, result.interval_ends[:, row, np.maximum(c.modes[row], 0)])
+        if result.interval is not None:
+            here = np.where(c.modes[row] < 0, np.nan, result.interval.ends[:, row, np.maximum(c.modes[row], 0)])
             ax.vlines(place, *(100 * (here / c.frequencies[row] - 1)), color=shades[row], lw=2.0)
         if c.published is not None:
             theirs = 100 * (c.published[row] / c.frequencies[row] - 1)
@@ -248,10 +248,10 @@ def mode_shapes(result: RunRecord, load: int = -1) -> Any:
 def shape_words(result: RunRecord, mode: int, load: int = -1) -> str:
     """Return what stands above a mode shape: frequency, name and damping, one a line."""
     lines = [f"{mode + 1}: {result.frequencies[load, mode]:.0f} Hz", plain(shape_name(result, mode, load))]
-    found = result.at_levels
+    found = result.levels
     if found is not None:
-        k = len(found.levels) // 2
-        lines.append(rf"$\zeta$ {100 * found.damping[load, k, mode]:.2g} % at {found.levels[k]:g} m/s²")
+        k = len(found.accelerations) // 2
+        lines.append(rf"$\zeta$ {100 * found.damping[load, k, mode]:.2g} % at {found.accelerations[k]:g} m/s²")
     elif np.isfinite(result.loss_factors[load, mode]):
         lines.append(rf"$\eta$ {100 * result.loss_factors[load, mode]:.2g} %")
     return "\n".join(filter(None, lines))

@@ -8,17 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.numerics.follow import between_by_rank
-from faying.style import Summary
+from faying.result.fields import Arrays, variable
 from faying.typing import Array
 
 OF_PARTS = ("mesh", "structure", "parts", "mode")  # sources that no stiffness of a joint bounds
 MAX_ROWS = 10  # of a summary
+IN = "modes/interval"  # of a file
 MIN_SQUARE = 1e-300  # where nothing moves a frequency
 
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Interval(Summary):
+class Interval(Arrays):
     """Best estimate of every frequency, and its 5 to 95 %.
 
     Each source moves ln f from the best estimate by itself, to `offsets[:, 0]` at its 5 % and `offsets[:, 1]` at its
@@ -36,17 +37,34 @@ class Interval(Summary):
     """
 
     sources: tuple[str, ...]
-    offsets: Array
-    low: Array
-    best: Array
-    high: Array
-    moved: ArrayLike = 0.0
+    offsets: Array = variable(
+        "source end load mode", "1", "change of ln f at 5 and at 95 % of one thing that is not known", f"{IN}_offsets"
+    )
+    best: Array = variable(
+        "load mode",
+        "Hz",
+        "best estimate of the frequency, the median of all that is not known",
+        f"{IN}_best",
+        shown="best",
+    )
+    low: Array = variable("load mode", "Hz", "5 % of the frequency, of all that is not known", f"{IN}_low", shown="5 %")
+    high: Array = variable(
+        "load mode", "Hz", "95 % of the frequency, of all that is not known", f"{IN}_high", shown="95 %"
+    )
+    moved: Array = variable("load mode", "1", "change of ln f by what is known of the parts", f"{IN}_moved")
 
     @classmethod
     def about(cls, best: Array, offsets: Mapping[str, Array], moved: ArrayLike = 0.0) -> Self:
         """From the best estimates [Hz] (loads, modes), and what each source moves ln f by (2, loads, modes)."""
         ends = np.stack(list(offsets.values()))
-        made = cls(sources=tuple(offsets), offsets=ends, low=best, best=best, high=best, moved=moved)
+        made = cls(
+            sources=tuple(offsets),
+            offsets=ends,
+            low=best,
+            best=best,
+            high=best,
+            moved=np.broadcast_to(moved, best.shape),
+        )
         down, up = made._distances
         return replace(made, low=best * np.exp(-down), high=best * np.exp(up))
 
@@ -81,6 +99,11 @@ class Interval(Summary):
         """From the best estimate down to 5 % and up to 95 %, in ln f (2, loads, modes) [-]."""
         down, up = np.minimum(self.offsets.min(axis=1), 0.0), np.maximum(self.offsets.max(axis=1), 0.0)
         return np.asarray(np.linalg.norm([down, up], axis=1))
+
+    @property
+    def ends(self) -> Array:
+        """5 and 95 % of each frequency (2, loads, modes) [Hz]."""
+        return np.stack([self.low, self.high])
 
     @property
     def width(self) -> Array:

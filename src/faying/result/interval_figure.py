@@ -6,8 +6,8 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.result.figure import band, mode_panels
+from faying.result.groups import Levels
 from faying.result.result import Result
-from faying.result.run_record import DampedLevels
 from faying.result.score import Score
 from faying.style import COLOURS, WIDE, colour, drawing, legend_above, new_figure, plain_numbers, shared_legend
 from faying.typeset import typeset
@@ -115,7 +115,7 @@ def damping_levels(result: Result, load: int = -1) -> Any:
 def damping_of(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
     """Draw the damping ratio [%] of one mode over its level, with its band and the part that is slip."""
     found = _at_levels(result)
-    a = found.levels
+    a = found.accelerations
     low, high = (100 * one[load, :, mode] for one in (found.low, found.high))
     band(ax, a, low, high, label="low to high")
     ax.plot(a, 100 * found.damping[load, :, mode], "o-", color=COLOURS[0], ms=3, label="damping")
@@ -131,7 +131,7 @@ def damping_of(ax: Any, result: Result, mode: int, load: int = -1) -> Any:
     return ax
 
 
-def _at_levels(result: Result) -> DampedLevels:
-    if result.at_levels is None:
+def _at_levels(result: Result) -> Levels:
+    if result.levels is None:
         raise InputError("the result has no damping at levels; run it with [modes] levels")
-    return result.at_levels
+    return result.levels

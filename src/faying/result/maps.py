@@ -7,12 +7,10 @@ from faying.result.run_record import RunRecord
 
 
 def joint_map_of(result: RunRecord, joint: int, *, contact: bool = False) -> FaceValues | None:
-    """Values where the faces of a joint touch; None where the result does not say which triangles those are.
+    """Values where the faces of a joint touch; None where all their triangles belong to other faces too.
 
     contact: whether the share of the area around each place that carries pressure is one of them.
     """
-    if result.face_of_triangle is None or joint >= len(result.joint_faces):
-        return None
     known = [name for name in result.joint_faces[joint] if name in result.faces]
     faces = [result.triangles[result.face_of_triangle == result.faces.index(name)] for name in known]
     faces = [face for face in faces if len(face)]  # a triangle on several faces is given to one of them
@@ -20,8 +18,8 @@ def joint_map_of(result: RunRecord, joint: int, *, contact: bool = False) -> Fac
     if not faces or not np.any(at):
         return None
     fields = {"pressure": result.pressure, "k_n": result.k_n, "k_t": result.k_t, "slip": result.slip}
-    values = {name: rows[:, at] for name, rows in fields.items() if rows is not None}
-    if result.gap is not None and np.ptp(result.gap) > 1e-9 * float(np.ptp(result.outline)):
+    values = {name: rows[:, at] for name, rows in fields.items()}
+    if np.ptp(result.gap) > 1e-9 * float(np.ptp(result.outline)):
         values["gap"] = result.gap[None, at]
     if contact:
         values["contact"] = (result.pressure[:, at] > 0).astype(float)

@@ -20,17 +20,17 @@ if TYPE_CHECKING:
 class Result(RunRecord):
     """What a study gives. Load [N] means the preload of the first bolt; modes are the elastic ones.
 
-    Frequencies, loss factors and shapes are those of the complex modes; "bonded" are the frequencies with the faces of
-    every joint bonded, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
-    was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the laws
-    state, None where none states one; `alternatives` names other laws, their frequencies are `alternative_frequencies`.
-    `backbones` are the curves over amplitude that the study asks for, at the greatest preload; `vibrations` what it
-    does in service, one after another at each preload.
-    `carried` is the greatest preload that the joints carried before each, None where all are first loading; `settled`
-    says that this was the greatest of the study.
+    Frequencies, loss factors and shapes are those of the complex modes; "bonded" are the frequencies with the faces
+    of every joint bonded, "free" those with the faces apart. `surfaces` and `laws` hold, per joint, what the law
+    was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the
+    laws state, None where none states one. `interval`, `levels`, `waves`, `above_range` and `alternatives` are
+    groups of what belongs together, each None where the study does not ask for it. `backbones` are the curves over
+    amplitude that the study asks for, at the greatest preload; `vibrations` what it does in service, one after
+    another at each preload. `carried` is the greatest preload that the joints carried before each, None where all
+    are first loading; `settled` says that this was the greatest of the study.
     `tightening` names the bolts in the order in which they were pulled, and is empty where all were pulled at once.
     `parts`, `faces`, `joint_faces` (the two faces of each joint), `supports` and `masses` say what the structure is
-    made of; they and the fields that go with them are empty or None in files of earlier versions.
+    made of.
     """
 
     @checked_call

@@ -1,6 +1,6 @@
 """What a run has found: frozen arrays with names, dimensions and units, and the facts that they belong to."""
 
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,7 +16,19 @@ from faying.misuse import checked_call
 from faying.notes import Note, grouped
 from faying.result.backbone import Backbone
 from faying.result.bolts import BoltNumbers
-from faying.result.fields import Recorded, RecordedQuantity, ShownAs, declared, in_units, load_texts, optional, variable
+from faying.result.fields import (
+    Recorded,
+    RecordedQuantity,
+    ShownAs,
+    declared,
+    group,
+    in_units,
+    load_texts,
+    optional,
+    quantities,
+    variable,
+)
+from faying.result.groups import Alternatives, BondedAboveRange, Levels, WaveDraws
 from faying.result.interval import Interval
 from faying.result.provenance import Provenance
 from faying.result.vibration import VibrationResponse
@@ -86,26 +98,6 @@ class Receptance:
         return _pairs(self.output_points, self.output_directions)
 
 
-@dataclass(frozen=True, kw_only=True)
-class DampedLevels:
-    """Modes at levels of acceleration, of one load (level, mode) or of all loads of a result (load, level, mode).
-
-    Args:
-        levels: Peak acceleration of the point that moves most [m/s2] (level,).
-        frequencies: At the friction of the study or the median of its prior [Hz].
-        damping, low, high: Ratio of slip and rest together [-]: median, and both ends.
-        slip, error: Ratio of slip alone at the median, and the error of that by the iteration [-].
-    """
-
-    levels: Array
-    frequencies: Array
-    damping: Array
-    low: Array
-    high: Array
-    slip: Array
-    error: Array
-
-
 def _pairs(points: Array, directions: Array) -> tuple[tuple[Point, Point], ...]:
     return tuple((tuple(p), tuple(d)) for p, d in zip(points.tolist(), directions.tolist(), strict=True))
 
@@ -154,7 +146,7 @@ class RunRecord(Recorded):
     outline: Array = variable("node axis", "m", "nodes of the outer surface", "surface/position")
     triangles: Index = variable("triangle corner", "1", "triangles between them", "surface/", dtype="i8")
     shapes: Any = variable("load mode node axis", "kg^-1/2", "mass-normalised mode shapes", "surface/shape", dtype="f4")
-    shapes_imaginary: Any = optional(
+    shapes_imaginary: Any = variable(
         "load mode node axis",
         "kg^-1/2",
         "imaginary part of the complex mode shapes, scaled as shapes: the motion is the real part of "
@@ -162,13 +154,11 @@ class RunRecord(Recorded):
         "surface/shape_imaginary",
         dtype="f4",
     )
-    part_of_triangle: Index | None = optional("triangle", "1", "part of each triangle, from 0", "surface/", dtype="i8")
-    face_of_triangle: Index | None = optional(
+    part_of_triangle: Index = variable("triangle", "1", "part of each triangle, from 0", "surface/", dtype="i8")
+    face_of_triangle: Index = variable(
         "triangle", "1", "named face of each triangle, from 0, -1: none", "surface/", dtype="i8"
     )
-    part_masses: Array | None = optional(
-        "part", "kg", "mass of each part, without bolts and point masses", "parts/mass"
-    )
+    part_masses: Array = variable("part", "kg", "mass of each part, without bolts and point masses", "parts/mass")
     stress: Array | None = optional(
         "load part",
         "Pa",
@@ -190,17 +180,15 @@ class RunRecord(Recorded):
     von_mises: Array | None = optional(
         "load node", "Pa", "stress of von Mises on the outer surface", "surface/", dtype="f4"
     )
-    slip: Array | None = optional(
+    slip: Array = variable(
         "load point", "m", "tangential displacement of the second face against the first under the preload", "points/"
     )
-    gap: Array | None = optional("point", "m", "distance of the faces before any load, form included", "points/")
-    bolt_seats: Array | None = optional(
-        "bolt end axis", "m", "where the axis of each bolt meets its seats", "bolts/seat"
-    )
-    bolt_diameters: Array | None = optional(
+    gap: Array = variable("point", "m", "distance of the faces before any load, form included", "points/")
+    bolt_seats: Array = variable("bolt end axis", "m", "where the axis of each bolt meets its seats", "bolts/seat")
+    bolt_diameters: Array = variable(
         "bolt", "m", "diameter of each shank, NaN where none is given", "bolts/diameter", gaps=True
     )
-    bolt_extents: Array | None = optional(
+    bolt_extents: Array = variable(
         "bolt edge",
         "m",
         "inner and outer diameter of the seat of each bolt, NaN for a bolt that is a part",
@@ -234,97 +222,26 @@ class RunRecord(Recorded):
     high: Array | None = optional(
         "load mode", "Hz", "frequency at the upper end of the laws' range", "modes/frequency_high", shown="high"
     )
-    interval_best: Array | None = optional(
-        "load mode", "Hz", "best estimate of the frequency, the median of all that is not known", "modes/", shown="best"
-    )
-    interval_low: Array | None = optional(
-        "load mode", "Hz", "5 % of the frequency, of all that is not known", "modes/", shown="5 %"
-    )
-    interval_high: Array | None = optional(
-        "load mode", "Hz", "95 % of the frequency, of all that is not known", "modes/", shown="95 %"
-    )
-    interval_offsets: Array | None = optional(
-        "source end load mode", "1", "change of ln f at 5 and at 95 % of one thing that is not known", "modes/"
-    )
+    interval: Interval | None = group("interval")
     mesh_error: Array | None = optional(
         "load mode", "1", "estimated relative error of the frequency by the mesh", "modes/", shown="error of the mesh"
     )
-    levels: Array | None = optional(
-        "level", "m/s2", "peak acceleration of the point that moves most", "modes/level_acceleration"
-    )
-    level_frequencies: Array | None = optional("load level mode", "Hz", "frequency at a level", "modes/", gaps=True)
-    level_damping: Array | None = optional(
-        "load level mode", "1", "damping ratio at a level", "modes/", shown="damping ratio", gaps=True
-    )
-    level_low: Array | None = optional("load level mode", "1", "lower end of damping at a level", "modes/", gaps=True)
-    level_high: Array | None = optional("load level mode", "1", "upper end of damping at a level", "modes/", gaps=True)
-    level_slip: Array | None = optional("load level mode", "1", "damping by slip at a level", "modes/", gaps=True)
-    level_error: Array | None = optional("load level mode", "1", "error of damping by slip", "modes/", gaps=True)
-    above_range_frequencies: Array | None = optional(
-        "load mode", "Hz", "frequency with what is above the law's end bonded", "modes/frequency_bonded_above"
-    )
-    above_range_loss_factors: Array | None = optional(
-        "load mode",
-        "1",
-        "loss factor with what is above the law's end bonded",
-        "modes/loss_factor_bonded_above",
-        gaps=True,
-    )
-    wave_seeds: Index | None = optional(
-        "draw", "1", "draws of waves on the faces, by their seed", "waves/seed", dtype="i8"
-    )
-    wave_frequencies: Array | None = optional(
-        "draw load mode", "Hz", "frequency with waves on the faces", "waves/frequency"
-    )
-    wave_slopes: Array | None = optional(
-        "draw mode", "Hz/N", "change of frequency with preload with waves", "waves/slope"
-    )
-    wave_rms: Array | None = optional(
-        "joint", "m", "rms of the waves of each face, NaN where none are drawn", "waves/rms", gaps=True
-    )
-    wave_lengths: Array | None = optional(
-        "joint end", "m", "shortest and longest wave that is drawn, NaN where none are", "waves/wave_length", gaps=True
-    )
-    alternative_frequencies: Array | None = optional(
-        "law load mode", "Hz", "frequency under another law", "laws/frequency", gaps=True
-    )
-    alternative_loss_factors: Array | None = optional(
-        "law load mode", "1", "loss factor under another law", "laws/loss_factor", gaps=True
-    )
-    alternative_above_range_frequencies: Array | None = optional(
-        "law load mode",
-        "Hz",
-        "frequency under another law with what is above its end bonded",
-        "laws/frequency_bonded_above",
-        gaps=True,
-    )
-    alternative_outside_share: Array | None = optional(
-        "law load",
-        "1",
-        "share of the joints' stiffness where another law is outside its validity range",
-        "laws/outside_share",
-        gaps=True,
-    )
-    alternative_above_range_share: Array | None = optional(
-        "law load", "1", "share of the joints above the end of another law", "laws/above_range_share", gaps=True
-    )
-    alternative_reach: Array | None = optional(
-        "law", "Pa", "pressure at which another law ends", "laws/end_pressure", gaps=True
-    )
+    levels: Levels | None = group("level")
+    above_range: BondedAboveRange | None = group("above_range")
+    waves: WaveDraws | None = group("wave")
+    alternatives: Alternatives | None = group("alternative")
     thermal_conductance: Array | None = optional(
         "load joint", "W/K", "conductance of heat, clean metal in vacuum", "joints/", gaps=True
     )
     electrical_conductance: Array | None = optional(
         "load joint", "S", "conductance of current, clean metal", "joints/", gaps=True
     )
-    interval_sources: tuple[str, ...] = ()
-    alternatives: tuple[str, ...] = ()
     joints: tuple[str, ...]
     bolts: tuple[str, ...]
     dowels: tuple[str, ...] = ()
-    parts: tuple[str, ...] = ()
-    faces: tuple[str, ...] = ()
-    joint_faces: tuple[tuple[str, str], ...] = ()
+    parts: tuple[str, ...]
+    faces: tuple[str, ...]
+    joint_faces: tuple[tuple[str, str], ...]
     supports: tuple[Support, ...] = ()
     masses: tuple[PointMass, ...] = ()
     unknowns: int
@@ -386,14 +303,6 @@ class RunRecord(Recorded):
             and getattr(self, name) is not None
         }
 
-    @property
-    def at_levels(self) -> DampedLevels | None:
-        """All that the result has at levels of acceleration; None where the study has no levels."""
-        found: dict[str, Any] = {
-            one.name: getattr(self, f"level_{one.name}", self.levels) for one in fields(DampedLevels)
-        }
-        return None if any(values is None for values in found.values()) else DampedLevels(**found)
-
     def open_share(self) -> Array:
         """Share of the joints' area that carries nothing [-] (l,)."""
         return np.asarray((self.pressure <= 0) @ self.weights / self.weights.sum())
@@ -454,8 +363,10 @@ class RunRecord(Recorded):
         if self.joints:
             out["greatest_pressure"] = {"unit": "Pa", "values": self.pressure.max(axis=1).tolist()}
             out["open_share"] = {"unit": "1", "values": self.open_share().tolist()}
-        for name in ("interval_sources", "alternatives", "parts", "dowels", "joints", "bolts", "tightening"):
+        for name in ("parts", "dowels", "joints", "bolts", "tightening"):
             out[name] = list(getattr(self, name))
+        out["interval_sources"] = [] if self.interval is None else list(self.interval.sources)
+        out["alternatives"] = [] if self.alternatives is None else list(self.alternatives.names)
         out |= {"damping": self.damping, "surfaces": list(self.surfaces), "laws": list(self.laws)}
         if (c := self.comparison) is not None:
             facts = {"source": c.source, "published_name": c.published_name, "kind": c.kind}
@@ -475,11 +386,10 @@ class RunRecord(Recorded):
     def labels(self) -> dict[str, Any]:
         """Labels of the dimensions of its arrays, by the name of the dimension."""
         out: dict[str, Any] = {"load": self._labels_of_loads, "mode": np.arange(1, self.frequencies.shape[1] + 1)}
-        out |= {"joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
-        out |= {"part": self.parts} if self.parts else {}
+        out |= {"part": self.parts, "joint": self.joints, "bolt": self.bolts, "axis": ("x", "y", "z")}
         out |= {"dowel": self.dowels} if self.dowels else {}
-        out |= {"source": self.interval_sources} if self.interval_sources else {}
-        return out | ({"law": self.alternatives} if self.alternatives else {})
+        out |= {} if self.interval is None else {"source": self.interval.sources}
+        return out | ({} if self.alternatives is None else {"law": self.alternatives.names})
 
     @property
     def joint_state(self) -> str:
@@ -501,21 +411,6 @@ class RunRecord(Recorded):
     def _labels_of_loads(self) -> tuple[str, ...]:
         return self.load_names if self.has_history else load_texts(self.loads)
 
-    @property
-    def interval(self) -> Interval | None:
-        """Best estimate and interval of each frequency, and what makes it; None in a result without one."""
-        low, best, high = self.interval_low, self.interval_best, self.interval_high
-        if self.interval_offsets is None or low is None or best is None or high is None:
-            return None
-        return Interval(sources=self.interval_sources, offsets=self.interval_offsets, low=low, best=best, high=high)
-
-    @property
-    def interval_ends(self) -> Array | None:
-        """5 and 95 % of each frequency (2, load, mode) [Hz]; None in a result without intervals."""
-        if self.interval_low is None or self.interval_high is None:
-            return None
-        return np.stack([self.interval_low, self.interval_high])
-
     def to_csv(self, path: str | Path) -> Path:
         """Write one row for each load and mode, units in the heading; the file appears complete or not at all."""
         return write_text(Path(path), self.csv_text())
@@ -523,12 +418,12 @@ class RunRecord(Recorded):
     def csv_text(self) -> str:
         """Return the rows of to_csv as text."""
         columns: list[tuple[str, Array]] = []
-        for name, meta in declared(type(self)).items():
-            head, values = meta.shown.column, getattr(self, name)
-            if not head or values is None or not (self.joints or np.isfinite(values).any()):
+        levels = () if self.levels is None else self.levels.accelerations
+        for _, meta, values in quantities(self):
+            head = meta.shown.column
+            if not head or not (self.joints or np.isfinite(values).any()):
                 continue
             if "level" in meta.dims:
-                levels = () if self.levels is None else self.levels
                 columns += [
                     (f"{head} at {level:g} m/s2 [{meta.unit_text}]", values[:, k]) for k, level in enumerate(levels)
                 ]

@@ -48,8 +48,8 @@ class Score:
         if c.published is not None:
             guesses[c.published_name] = c.published
         inside = None
-        if result.interval_ends is not None:
-            low, high = result.interval_ends[:, rows, modes]
+        if result.interval is not None:
+            low, high = result.interval.ends[:, rows, modes]
             inside = (low <= test) & (test <= high)
         return cls(loads=result.loads, test=test, guesses=guesses, inside=inside)
 

@@ -15,8 +15,7 @@ def part_and_axis(result: RunRecord, mode: int, load: int = -1) -> tuple[str, st
     """Which part moves most ("all" or "both" where they move alike, "" where there is one), and along which axis."""
     shape = result.shapes[load, mode].astype(float)
     part_of_node = np.zeros(len(shape), dtype=int)
-    if result.part_of_triangle is not None:
-        part_of_node[result.triangles.ravel()] = np.repeat(result.part_of_triangle, 3)
+    part_of_node[result.triangles.ravel()] = np.repeat(result.part_of_triangle, 3)
     parts = [np.sqrt(np.mean(shape[part_of_node == k] ** 2, axis=0)) for k in range(len(result.parts))]
     sizes = np.array([np.linalg.norm(one) for one in parts])
     axis = "xyz"[int(np.argmax(np.sum(np.square(parts), axis=0)))] if parts else ""

@@ -60,8 +60,7 @@ def _grid(result: RunRecord, maps: list[Any], load: int) -> str:
     points: dict[str, Any] = {}
     for mode in range(result.frequencies.shape[1]):
         points[f"mode {mode + 1} real"] = moved(result.shapes[load, mode])
-        if result.shapes_imaginary is not None:
-            points[f"mode {mode + 1} imaginary"] = moved(result.shapes_imaginary[load, mode])
+        points[f"mode {mode + 1} imaginary"] = moved(result.shapes_imaginary[load, mode])
     if result.von_mises is not None:
         points["von Mises stress [Pa]"] = moved(result.von_mises[load])
     for name in UNITS:

@@ -25,27 +25,22 @@ SHARP = 0.7  # rad: neighbours whose normals differ by more have a feature edge 
 
 
 def of_result(result: Result) -> Scene:
-    """Return the scene of a result: parts, joints with maps, bolts, supports, masses, complex modes at every load.
-
-    A result of an earlier version has one part and no joints' faces, since its file does not say them.
-    """
-    parts = result.parts or ("structure",)
-    given = result.part_of_triangle, result.face_of_triangle
-    none = np.zeros(len(result.triangles), dtype=np.int64)
-    part, named = none if given[0] is None else given[0], none - 1 if given[1] is None else given[1]
-    faces, of_triangle = faces_of(result.outline, result.triangles, part, named, result.faces)
+    """Return the scene of a result: parts, joints with maps, bolts, supports, masses, complex modes at every load."""
+    faces, of_triangle = faces_of(
+        result.outline, result.triangles, result.part_of_triangle, result.face_of_triangle, result.faces
+    )
     by_name = {face.name: k for k, face in enumerate(faces) if face.name}
     joints = [
         SceneJoint(
             name=name, faces=tuple(by_name[face] for face in pair if face in by_name), map=joint_map_of(result, k)
         )
-        for k, (name, pair) in enumerate(zip(result.joints, result.joint_faces, strict=False))
+        for k, (name, pair) in enumerate(zip(result.joints, result.joint_faces, strict=True))
     ]
     return Scene(
         title=result.title,
         points=result.outline,
         triangles=result.triangles,
-        parts=parts,
+        parts=result.parts,
         faces=faces,
         face_of_triangle=of_triangle,
         edges=feature_edges(result.outline, result.triangles, of_triangle),
@@ -150,8 +145,6 @@ def feature_edges(points: Array, triangles: Index, of_triangle: Index) -> Index:
 
 
 def _bolts(result: Result) -> tuple[SceneBolt, ...]:
-    if result.bolt_seats is None or result.bolt_diameters is None or result.bolt_extents is None:
-        return ()
     size = float(np.linalg.norm(np.ptp(result.outline, axis=0)))
     out = []
     rows = zip(result.bolts, result.bolt_seats, result.bolt_diameters, result.bolt_extents, strict=True)

@@ -113,13 +113,13 @@ class SceneModes:
         frequencies: (l, m) [Hz].
         loss_factors: (l, m) [-], NaN where none is predicted.
         real: (l, m, n, 3) [kg^-1/2], at the points of the scene.
-        imaginary: Likewise, None where the modes are real.
+        imaginary: Likewise.
     """
 
     frequencies: Array
     loss_factors: Array
     real: Array
-    imaginary: Array | None
+    imaginary: Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -249,11 +249,11 @@ def _modes(modes: SceneModes | None, arrays: dict[str, Any]) -> dict[str, Any] |
         if room <= 0:
             break
         real = np.asarray(modes.real[load, mode])
-        imaginary = None if modes.imaginary is None else np.asarray(modes.imaginary[load, mode])
-        greatest = max(float(np.abs(part).max()) for part in (real, imaginary) if part is not None)
+        imaginary = np.asarray(modes.imaginary[load, mode])
+        greatest = float(max(np.abs(real).max(), np.abs(imaginary).max()))
         scale = greatest / STEPS or 1.0
         arrays[f"real.{load}.{mode}"] = packed(real, "i2", scale)
-        if imaginary is not None and float(np.abs(imaginary).max()) >= scale / 2:
+        if float(np.abs(imaginary).max()) >= scale / 2:
             arrays[f"imaginary.{load}.{mode}"] = packed(imaginary, "i2", scale)
         kept = (arrays.get(f"{part}.{load}.{mode}") for part in ("real", "imaginary"))
         room -= sum(len(one["data"]) for one in kept if one is not None)

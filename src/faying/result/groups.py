@@ -1,0 +1,85 @@
+"""Groups of fields of a result that belong together: a result has all of a group, or None."""
+
+from dataclasses import dataclass
+
+from faying.result.fields import Arrays, optional, variable
+from faying.typing import Array, Index
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Levels(Arrays):
+    """Modes at levels of acceleration.
+
+    Frequencies are those at the friction of the study or at the median of its prior. Damping is that of slip and of
+    rest together, with both ends; `error` is that of the slip alone, by the iteration.
+    """
+
+    accelerations: Array = variable(
+        "level", "m/s2", "peak acceleration of the point that moves most", "modes/level_acceleration"
+    )
+    frequencies: Array = variable("load level mode", "Hz", "frequency at a level", "modes/level_frequencies", gaps=True)
+    damping: Array = variable(
+        "load level mode", "1", "damping ratio at a level", "modes/level_damping", shown="damping ratio", gaps=True
+    )
+    low: Array = variable("load level mode", "1", "lower end of damping at a level", "modes/level_low", gaps=True)
+    high: Array = variable("load level mode", "1", "upper end of damping at a level", "modes/level_high", gaps=True)
+    slip: Array = variable("load level mode", "1", "damping by slip at a level", "modes/level_slip", gaps=True)
+    error: Array = variable("load level mode", "1", "error of damping by slip", "modes/level_error", gaps=True)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class WaveDraws(Arrays):
+    """Frequencies under several draws of waves on the faces; `slopes` only with several preloads."""
+
+    seeds: Index = variable("draw", "1", "draws of waves on the faces, by their seed", "waves/seed", dtype="i8")
+    frequencies: Array = variable("draw load mode", "Hz", "frequency with waves on the faces", "waves/frequency")
+    slopes: Array | None = optional("draw mode", "Hz/N", "change of frequency with preload with waves", "waves/slope")
+    rms: Array = variable(
+        "joint", "m", "rms of the waves of each face, NaN where none are drawn", "waves/rms", gaps=True
+    )
+    lengths: Array = variable(
+        "joint end", "m", "shortest and longest wave that is drawn, NaN where none are", "waves/wave_length", gaps=True
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class BondedAboveRange(Arrays):
+    """Modes with what is above the end of a law bonded, where anything is at any preload."""
+
+    frequencies: Array = variable(
+        "load mode", "Hz", "frequency with what is above the law's end bonded", "modes/frequency_bonded_above"
+    )
+    loss_factors: Array = variable(
+        "load mode",
+        "1",
+        "loss factor with what is above the law's end bonded",
+        "modes/loss_factor_bonded_above",
+        gaps=True,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Alternatives(Arrays):
+    """The modes under other laws, by their names; NaN where a law has no answer."""
+
+    names: tuple[str, ...]
+    frequencies: Array = variable("law load mode", "Hz", "frequency under another law", "laws/frequency", gaps=True)
+    loss_factors: Array = variable("law load mode", "1", "loss factor under another law", "laws/loss_factor", gaps=True)
+    above_range_frequencies: Array = variable(
+        "law load mode",
+        "Hz",
+        "frequency under another law with what is above its end bonded",
+        "laws/frequency_bonded_above",
+        gaps=True,
+    )
+    outside_share: Array = variable(
+        "law load",
+        "1",
+        "share of the joints' stiffness where another law is outside its validity range",
+        "laws/outside_share",
+        gaps=True,
+    )
+    above_range_share: Array = variable(
+        "law load", "1", "share of the joints above the end of another law", "laws/above_range_share", gaps=True
+    )
+    reach: Array = variable("law", "Pa", "pressure at which another law ends", "laws/end_pressure", gaps=True)
