@@ -95,8 +95,13 @@ def states_unit(line: str, units: Iterable[str]) -> bool:
     """Whether a line of text speaks of a unit: the word itself, or one like those of `units` (SI) in brackets."""
     if re.search(r"\bunits?\b|\beinheit", line, re.IGNORECASE):
         return True
+    return any(is_unit(text, unit) for text in in_brackets(line) for unit in units)
+
+
+def in_brackets(line: str) -> list[str]:
+    """What stands in each pair of brackets of a line."""
     inner = [a or b for a, b in re.findall(r"\[([^\]]*)\]|\(([^)]*)\)", line)]
-    return any(is_unit(text, unit) for text in inner if text.strip() for unit in units)
+    return [text for text in inner if text.strip()]
 
 
 def row_of_units(cells: Sequence[Cell], units: Sequence[str]) -> tuple[str, ...] | None:

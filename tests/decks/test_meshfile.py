@@ -434,6 +434,9 @@ def test_faults_of_other_formats(tmp_path):
     line = next(line for line in archive.splitlines() if line.startswith("      100"))
     fault(tmp_path, archive.replace(line, f"{line}\n{line}"), "is the archive complete", "m.cdb")
     fault(tmp_path, "FINISH\n", "holds 0 nodes in NBLOCK", "m.cdb")
+    for command in ("NSCALE,,ALL,,,25.4,25.4,25.4", "NMODIF,1,0.1", "EDELE,1", "ESYM,,100,ALL", "CDREAD,DB,more,cdb"):
+        changed = archive.replace("FINISH", f"{command}\nFINISH")
+        fault(tmp_path, changed, f"{command.partition(',')[0]} changes nodes or elements", "m.cdb")
     if pytest.importorskip("meshio"):
         fault(tmp_path, "nonsense", "cannot be read as VTK", "m.vtu")
 
@@ -509,3 +512,21 @@ def test_counts_below_zero_in_gmsh(tmp_path):
     wild = text.replace(body[2], " ".join([*row[:2], "-5", *row[3:]]))
     with pytest.raises(faying.ReadError, match="ends in the middle of a record"):
         faying.read_mesh(written(tmp_path, wild, "m.msh"), unit="mm")
+
+
+def test_nodes_and_elements_of_single_commands_of_ansys_are_named(tmp_path):
+    path = tmp_path / "m.cdb"
+    path.write_text(meshfiles.ansys(two()).replace("FINISH", "N,9001,0.1,0,0\nEN,9001,9001\nFINISH"))
+    notes = faying.read_mesh(path, unit="mm").notes
+    assert "nodes and elements of the commands N, EN, outside the blocks, are not read" in [note.text for note in notes]
+
+
+def test_fields_of_nastran_that_repeat_a_card_are_refused(tmp_path):
+    text = meshfiles.nastran(two())
+    first = next(line for line in text.splitlines() if line.startswith("GRID"))
+    fault(tmp_path, text.replace(first, f"{first}\n=,*(1),=,*(1.),=="), "fields that repeat the card before", "m.bdf")
+
+
+def test_a_set_of_the_nodes_of_elements_is_refused(tmp_path):
+    text = meshfiles.abaqus(two()) + "*NSET, NSET=all, ELSET=p0\n"
+    fault(tmp_path, text, "takes the nodes of elements", "m.inp")

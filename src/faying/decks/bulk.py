@@ -130,6 +130,8 @@ class Bulk:
 
     def take(self, name: str, fields: list[str], where: str) -> None:
         """Note one card."""
+        if name.startswith("=") or any(word.startswith(("=", "*(")) for word in fields):
+            raise ReadError(f"{where}: fields that repeat the card before (=, *(n)) are not read; write them out")
         if name == "GRID":
             self._grid(fields, where)
         elif name == "GRDSET":

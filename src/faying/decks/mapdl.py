@@ -24,6 +24,10 @@ from faying.typing import Array, Index
 _SOLIDS = {"185": 8, "186": 20, "187": 10, "285": 4, "45": 8, "95": 20, "92": 10}
 _SURFACE = frozenset(map(str, ANSYS_SURFACES))
 _LEFT_OUT = {str(number): what for number, what in ANSYS_LEFT_OUT.items()}
+# they make nodes and elements one by one, as of a mass or a pilot node; or change those of the blocks
+_MAKERS = ("N", "E", "EN")
+_OF_NODES = ("NGEN", "NMODIF", "NSCALE", "NDELE", "NSYM", "NUMMRG")
+_OF_ELEMENTS = ("EGEN", "ENGEN", "ESYM", "ENSYM", "EDELE", "EMODIF")
 _CONSTRAINTS = ("CE", "CP", "CERIG", "RBE3", "CEINTF", "CPINTF", "PSMESH", "SLOAD")
 
 
@@ -75,7 +79,12 @@ class _Archive:
                 self.kinds[int(words[1])] = re.sub(r"\D", "", words[2])
             return k + 1
         self.bolts.take(name, words)
-        if name in _CONSTRAINTS:
+        if name in (*_OF_NODES, *_OF_ELEMENTS, "CDREAD", "/INPUT"):
+            raise ReadError(
+                f"{self.path.name}, line {k + 1}: {name} changes nodes or elements or reads more of them, which is not "
+                "done here; write the archive anew with CDWRITE"
+            )
+        if name in (*_CONSTRAINTS, *_MAKERS):
             self.commands.append(name)
         return self._passed(k)
 
@@ -234,8 +243,12 @@ def _left_out(elements: list[str], commands: list[str]) -> list[str]:
         "mass" + ("; give the bolts in [[bolt]] of the study, or let faying new propose them" if kind == "179" else "")
         for kind in dict.fromkeys(elements)
     ]
+    made = [name for name in _MAKERS if name in commands]
+    if made:
+        notes.append(f"nodes and elements of the commands {', '.join(made)}, outside the blocks, are not read")
     bolts = [name for name in commands if name in ("PSMESH", "SLOAD")]
-    return notes + left_out({BOLT: bolts, CONSTRAINT: [name for name in commands if name not in bolts]}, "")
+    rest = [name for name in commands if name not in (*bolts, *made)]
+    return notes + left_out({BOLT: bolts, CONSTRAINT: rest}, "")
 
 
 @dataclass

@@ -268,6 +268,8 @@ def _set(block: Block, sets: dict[str, Items], name: str | None) -> None:
     if not name:
         raise ReadError(f"{block.where}: *{block.keyword} without a name")
     instance = block.options.get("INSTANCE", "")
+    if block.keyword == "NSET" and "ELSET" in block.options:
+        raise ReadError(f"{block.where}: *NSET, ELSET= takes the nodes of elements, which is not done; list the nodes")
     if "GENERATE" in block.options:
         for row in block.rows():
             first, last, *step = (int(word) for word in row if word)

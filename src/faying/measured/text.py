@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.columns import Cell, is_unit, plain_unit, split_heading, states_unit
+from faying.columns import Cell, in_brackets, is_unit, plain_unit, split_heading, states_unit
 from faying.errors import InputError, ReadError
 from faying.files import end_of, refuse_decimal_comma
 from faying.measured.frf import FRF, UNITS, Dof, without_static
@@ -126,17 +126,25 @@ def read_layout(line: str, quantity: str, where: str) -> FrfColumns:
 
 def _with_unit(cell: Cell, units: tuple[str, ...]) -> Cell:
     """The cell with the unit that its last word is, as in "Frequency kHz", where it states none in brackets."""
-    name, _, last = cell.text.rpartition(" ")
+    name, _, last = cell.text.replace("_", " ").rpartition(" ")
     found, stated = plain_unit(last), set("[(") & set(cell.text) or cell.unit.lower().startswith("db")
     if stated or not name or not any(is_unit(found, unit) for unit in units):
         return cell
     return Cell(text=cell.text, name=name.lower(), unit=found)
 
 
+def _words(cell: Cell) -> set[str]:
+    """The words of the name of a column, and the whole of it."""
+    return {*re.findall(r"[^\W\d_]+", cell.name), cell.name}
+
+
 def _role(cell: Cell, where: str) -> str:
     """What one column is: the one role that its words name; one in decibels is a magnitude."""
-    words = {*re.findall(r"[^\W\d_]+", cell.name), cell.name}
-    found = [role for role, names in ROLES.items() if names & words]
+    units = [f"{unit}/N" for unit in DIMENSIONS.values()]
+    stated = [one[:2].lower() == "db" or any(is_unit(one, unit) for unit in units) for one in in_brackets(cell.text)]
+    if stated.count(True) > 1:
+        raise ReadError(f'{where}: "{cell.text}" states two units; write one, for decibels "dB re 1 g/N" or the like')
+    found = [role for role, names in ROLES.items() if names & _words(cell)]
     if not found and re.match(r"db\b", cell.unit, re.IGNORECASE):
         found = ["magnitude"]
     if "omega" in found and "frequency" in found:
@@ -340,10 +348,9 @@ def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path)
         _refuse_units([entry for entry in above if entry != plain[-1]], path)
         return found
     for number, line in reversed(above):
-        with suppress(ReadError):
-            named = len(split_heading(line.lstrip("# "))) == width
-            if named:
-                return read_layout(line.lstrip("# "), quantity, f"{path}, line {number}")
+        cells = split_heading(line.lstrip("# "))
+        if len(cells) == width and {role for cell in cells for role, names in ROLES.items() if names & _words(cell)}:
+            return read_layout(line.lstrip("# "), quantity, f"{path}, line {number}")
     _refuse_units(above, path)
     return plain_layout(width)
 

@@ -11,13 +11,14 @@ import numpy as np
 
 from faying.columns import plain_unit
 from faying.errors import FayingError, InputError, ReadError
-from faying.surface.files.text import uneven_line
+from faying.surface.files.text import refuse_lost, uneven_line
 from faying.surface.heights import ASK_SIZE, ASK_UNITS, Instrument, check_points
 from faying.surface.scan import Profile, Scan
 from faying.text import few
 from faying.units import scale
 
 Steps = Callable[[int, int], tuple[float, float]]
+_ANY_TEXT = ("AscReader", "XYZReader")  # of the library: they pass over every line that they cannot read
 
 
 def _library() -> Any:
@@ -123,11 +124,15 @@ def _opened(file: Path, library: Any, kind: str | None, wanted: str | None) -> _
         maps = [one for one in reader.channels if one.is_height_channel and not isinstance(one.unit, tuple)]
         maps = maps or [reader.default_channel]
         channel = maps[_chosen(file, [one.channel_id for one in maps], wanted)]
-        stated = channel.physical_sizes is not None
-        points = channel.nb_grid_pts
+        points, generic = channel.nb_grid_pts, type(reader).__name__ in _ANY_TEXT
+        stated = channel.physical_sizes is not None and not (generic and channel.unit is None)  # else pixels, perhaps
         if points is not None and len(points) > 0:
             check_points(str(file), float(np.prod([float(n) for n in points])))
-        return _of(channel.topography(**({} if stated else {"physical_sizes": channel.nb_grid_pts})), stated=stated)
+        lengths = {} if channel.physical_sizes is not None else {"physical_sizes": channel.nb_grid_pts}
+        found = _of(channel.topography(**lengths), stated=stated)
+    if generic and len(maps) == 1:
+        refuse_lost(file, found.heights.size, unit=found.unit is not None)
+    return found
 
 
 def _contained(file: Path, wanted: str | None) -> _Content:

@@ -148,7 +148,11 @@ def _text_or_other(
         _no_channel(file, channel)
         if layout.units is not None:
             _no_units(file, *units)
-        return text.read(file, layout, _scales(file, layout, *units, lateral), lateral.steps if lateral else None)
+        scales = _scales(file, layout, *units, lateral)
+        scan = text.read(file, layout, scales, lateral.steps if lateral else None)
+        if layout.units is not None or not layout.spoken:
+            return scan
+        return replace(scan, notes=(*scan.notes, f'{file}: "{layout.spoken}" is not read; the unit is the one given'))
     except FayingError:
         raise
     except (ValueError, MemoryError, OverflowError) as fault:
@@ -164,14 +168,17 @@ def _scales(
         return x, y, z
     if layout.matrix and (lateral or layout.across is None):
         if not lateral or z_unit is None:
+            what = (
+                f'"{layout.spoken}" is in words that are not read' if layout.spoken else "it states no size and no unit"
+            )
             raise InputError(
-                f"{file}: a matrix of heights states neither its size nor a unit; {ASK_SIZE}, and z_unit, for example "
-                '"um" (--z-unit um)'
+                f'{file}: a matrix of heights: {what}; {ASK_SIZE}, and z_unit, for example "um" (--z-unit um)'
             )
         return 1.0, 1.0, scale(z_unit, "m", name="z_unit")
     if xy_unit is None or z_unit is None:
         lacking = [n for n, u in (("xy_unit", xy_unit), ("z_unit", z_unit)) if u is None]
-        raise InputError(f"{file}: the file states no unit; give {' and '.join(lacking)}, {ASK_UNITS}")
+        what = f'"{layout.spoken}" is in words that are not read' if layout.spoken else "the file states no unit"
+        raise InputError(f"{file}: {what}; give {' and '.join(lacking)}, {ASK_UNITS}")
     xy = scale(xy_unit, "m", name="xy_unit")
     return xy, xy, scale(z_unit, "m", name="z_unit")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from faying.columns import line_count, mark_of, plain_unit, split_heading, table_in_one_go
+from faying.columns import line_count, mark_of, plain_unit, row_of_units, split_heading, states_unit, table_in_one_go
 from faying.errors import ReadError
 from faying.files import refuse_decimal_comma
 from faying.surface.heights import BYTES, check_points
@@ -15,10 +15,13 @@ from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 from faying.units import scale
 
+_UNITS = ("m", "mm", "um", "µm", "nm", "Å")  # that SurfaceTopography finds in a heading
 Steps = Callable[[int, int], tuple[float, float]]
 _NUMBER = re.compile(r"[+-]?(\d+(?:\.\d*)?|\.\d+)([eE][+-]?\d+)?$")
 _SIZE = re.compile(r"#\s*(?:Width|Breite|Height|Höhe):\s*(\S+)\s*(\S+)\s*$")
+_LATERAL = re.compile(r"#\s*Lateral units:\s*(\S+)\s*$")
 _HEIGHTS = re.compile(r"#\s*Value units:\s*(\S+)\s*$")
+_OF_PROGRAMS = ("Scan Data", "X;Y;valid")  # in the heads of Dektak and of HFM, which the library of instruments reads
 _MISSING = {"", "nan", "na", "n/a", "bad", "---", "***", "*"}
 
 
@@ -43,7 +46,7 @@ class TextLayout:
     """How a text file is laid out: numbers in a row (2: x,z; 3: x,y,z; more: a matrix of heights), lines of heading,
     metres per unit of x, y, z where the heading states them, places of x, y, z (or x, z) in a row; size (x, y) [m] of
     a matrix that states it; across: positions of its columns, where they stand above it, as those of its rows then do
-    before each row."""
+    before each row; spoken: a line above the numbers that speaks of a unit and is not read."""
 
     columns: int
     heading: int
@@ -51,6 +54,7 @@ class TextLayout:
     order: tuple[int, ...] | None = None
     size: tuple[float, float] | None = None
     across: tuple[float, ...] | None = None
+    spoken: str = ""
 
     @property
     def matrix(self) -> bool:
@@ -61,7 +65,8 @@ class TextLayout:
 def layout(path: Path) -> TextLayout | None:
     """Return the layout of a text of numbers, None for any other file.
 
-    A heading is one line such as "x [mm],y [mm],z [um]"; a matrix has four numbers in a row or more, and either no
+    A heading is a line such as "x [mm],y [mm],z [um]", or a comment, maybe with other lines above it and a row of units
+    below it; a matrix has four numbers in a row or more, and either no
     heading, or a row and a column of positions with a word or nothing in their corner, or the comments of Gwyddion,
     which state size and unit. Raises ReadError for decimal commas.
     """
@@ -70,31 +75,41 @@ def layout(path: Path) -> TextLayout | None:
     if not head.strip() or b"\0" in head:
         return None
     lines = [line for line in head.decode("utf-8-sig", "replace").splitlines() if line.strip()]
-    stated = _comments([line for line in lines if line.lstrip().startswith("#")], path)
+    comments = [line.strip() for line in lines if line.lstrip().startswith("#")]
+    if sum(_SIZE.match(line) is not None for line in comments) > 2:
+        raise ReadError(f"{path}: its comments state more than one size; export each map to a file of its own")
+    size, units = _comments(comments, path)
     lines = [line for line in lines if not line.lstrip().startswith("#")]
-    heading = _heading(lines[0], path) if lines else None
-    rows = lines[1:] if heading else lines
-    for line in rows[:1]:
-        refuse_decimal_comma(line, str(path))
-    across = None if heading else _positions_above(rows[: -1 or None])
+    across = _positions_above(lines[: -1 or None])
     if across is not None:
         return TextLayout(columns=len(across) + 1, heading=1, across=across)
+    above = next((k for k, line in enumerate(lines) if _row(line) is not None), 0)
+    for line in lines[: above + 2]:
+        refuse_decimal_comma(line, str(path))
+    rows = lines[above:]
     found = [_row(line) for line in (rows[:-1] or rows)[:31]]
     if not found or found[0] is None:
         return None
     columns = _columns(rows[:-1] or rows, len(found[0]))
-    if stated is not None:
-        size, unit = stated
-        return TextLayout(columns=len(found[0]), heading=0, units=(1.0, 1.0, unit), size=size)
+    words = [*comments, *lines[:above]]
+    of_unit = (line.strip()[:80] for line in words if _states_size(line.strip()))
+    spoken = next(of_unit, "") if units is None else ""
+    if size is not None:
+        return TextLayout(columns=len(found[0]), heading=above, units=units, size=size)
+    heading = _headed(comments, lines[:above], columns, path)
     if heading is not None:
         units, order = heading
-        return TextLayout(columns=max(columns, len(order)), heading=1, units=units, order=order)
+        return TextLayout(columns=max(columns, len(order)), heading=above, units=units, order=order, spoken=spoken)
+    if any(line.strip().startswith(_OF_PROGRAMS) for line in lines[:above]):
+        return None
     if any(row is not None and len(row) in (2, 3) for row in found):
-        return TextLayout(columns=columns, heading=0) if columns in (2, 3) else None
+        return TextLayout(columns=columns, heading=above, units=units, spoken=spoken) if columns in (2, 3) else None
+    if above:
+        return None
     alike = sum(row is not None and len(row) == len(found[0]) for row in found)
     if len(rows) > 2 and columns > 3 and alike > len(found) / 2:
         _refuse_more(path, [row for row in found if row is not None and len(row) == columns], columns)
-        return TextLayout(columns=columns, heading=0)
+        return TextLayout(columns=columns, heading=0, spoken=spoken)
     return None
 
 
@@ -134,12 +149,13 @@ def _columns(rows: list[str], first: int) -> int:
     return max((len(row) for row in found if row is not None and len(row) <= first + 1), default=first)
 
 
-def _comments(lines: list[str], path: Path) -> tuple[tuple[float, float], float] | None:
-    """Size (x, y) [m] and metres per unit of the heights from the comments of Gwyddion, None where there are none."""
-    sizes = [found for line in lines if (found := _SIZE.match(line.strip()))]
-    heights = [found for line in lines if (found := _HEIGHTS.match(line.strip()))]
-    if len(sizes) != 2 or len(heights) != 1:
-        return None
+def _comments(lines: list[str], path: Path) -> tuple[tuple[float, float] | None, tuple[float, float, float] | None]:
+    """Size (x, y) [m] of a matrix, and metres per unit of x, y, z, from the comments of Gwyddion; None without them."""
+    sizes, laterals, heights = (
+        [found for line in lines if (found := one.match(line))] for one in (_SIZE, _LATERAL, _HEIGHTS)
+    )
+    if len(heights) != 1 or (len(sizes) != 2 and len(laterals) != 1):
+        return None, None
 
     def metres(number: str, unit: str) -> float:
         value = _value(number)
@@ -147,10 +163,27 @@ def _comments(lines: list[str], path: Path) -> tuple[tuple[float, float], float]
             raise ReadError(f"{path}: a size of {number} {unit} in its head; write a positive number such as 12.5 um")
         return value * scale(plain_unit(unit), "m", name=f"{path}, head")
 
-    return (metres(sizes[0][1], sizes[0][2]), metres(sizes[1][1], sizes[1][2])), metres("1", heights[0][1])
+    z = metres("1", heights[0][1])
+    if len(sizes) == 2:
+        return (metres(sizes[0][1], sizes[0][2]), metres(sizes[1][1], sizes[1][2])), (1.0, 1.0, z)
+    xy = metres("1", laterals[0][1])
+    return None, (xy, xy, z)
 
 
 Heading = tuple[tuple[float, float, float] | None, tuple[int, ...]]
+
+
+def _headed(comments: list[str], lines: list[str], columns: int, path: Path) -> Heading | None:
+    """The heading: the last line above the numbers, or the one above a row of units; else a comment that is one."""
+    if not lines:
+        said = [line.lstrip("# ") for line in comments]
+        return next((_heading(line, path) for line in said if len(split_heading(line)) == columns), None)
+    units = row_of_units(split_heading(lines[-1]), ("m",) * columns)
+    if units is None or len(lines) < 2:
+        return _heading(lines[-1], path)
+    found = _heading(lines[-2], path)
+    factors = [scale(units[k], "m") for k in found[1]] if found is not None else []
+    return found and ((factors[0], factors[-2], factors[-1]), found[1])
 
 
 def _heading(line: str, path: Path) -> Heading | None:
@@ -254,6 +287,41 @@ def _line_by_line(path: Path, how: TextLayout) -> Array:
     if len(rows) < (2 if how.matrix else 4):
         raise ReadError(f"{path}: {len(rows)} points; a scan needs at least 2 x 2, the file is empty or cut off")
     return np.array(rows)
+
+
+def refuse_lost(path: Path, points: int, *, unit: bool) -> None:
+    """Raise ReadError where somebody else has read a text and not all of its numbers.
+
+    points: how many heights were found; unit: whether one was. Readers that take any text lose lines without a row of
+    numbers, marks of points that are not valid, and units that they do not know.
+    """
+    numbered = enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), 1)
+    lines = [(number, line.strip()) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
+    start = next((k for k, (_, line) in enumerate(lines) if _row(line) is not None), len(lines))
+    head = [line for _, line in lines[:start]]
+    spoken = next((line[:80] for line in head if not unit and _states_size(line)), None)
+    if spoken is not None:
+        raise ReadError(f'{path}: "{spoken}" speaks of a unit and is not read; take the line out, and give the unit')
+    rows = [_row(line) for _, line in lines[start:]]
+    marked = "X;Y;valid" in head
+    for (number, line), row in zip(lines[start:], rows, strict=True):
+        if row is None or len(row) != len(rows[0] or ()):
+            refuse_decimal_comma(line, f"{path}, line {number}")
+            raise ReadError(f'{path}: line {number} "{line[:40]}" is not a row of numbers as those above it')
+        if marked and row[-1] != 1:
+            raise ReadError(f"{path}: line {number} is marked as not valid; take such lines out of the file")
+    units = [words.split()[-1] for words in head[-1].strip(", ").split(",")[:2]] if "Scan Data" in head else []
+    if units != ["um", "Micrometer"] and any(unit not in _UNITS for unit in units):
+        raise ReadError(f'{path}: "{head[-1]}": the units that are read are {", ".join(_UNITS)}; write them there')
+    if points not in (len(rows), sum(len(row) for row in rows if row is not None)):
+        raise ReadError(
+            f"{path}: {points} heights were read of {len(rows)} rows of numbers: the form of its head is not known"
+        )
+
+
+def _states_size(line: str) -> bool:
+    """Whether a line of words speaks of a unit or a size."""
+    return states_unit(line, ("m",)) or bool(_SIZE.match(line)) or line.lower().startswith("cellsize")
 
 
 def _refuse_positions(path: Path, data: Array) -> None:

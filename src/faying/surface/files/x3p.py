@@ -166,7 +166,7 @@ def _heights(archive: zipfile.ZipFile, root: ElementTree.Element, path: Path) ->
             )
         z = np.frombuffer(blob, kind).reshape(ny, nx)
         mask = _text(root, "Record3", "DataLink", "ValidPointsLink")
-        if mask and mask in archive.namelist():
+        if mask:
             bits = np.unpackbits(
                 np.frombuffer(_member(archive, mask, LARGEST_HEIGHTS, path), np.uint8), bitorder="little"
             )
