@@ -89,7 +89,6 @@ EXCEPTIONS = {
     "joint/joint.py:__init__": PUBLIC,
     "study/load.py:__init__": PUBLIC,
     "study/vibration.py:__init__": PUBLIC,
-    "measured/records.py:frf_from_records": PUBLIC,
     "export/attach.py:attach": PUBLIC,
     "backbones/backbone.py:backbone": PUBLIC,
     "surface/synthesize.py:spectral": PUBLIC,

@@ -54,7 +54,6 @@ from .measured.compare import compare_modes as compare_modes
 from .measured.frf import FRF as FRF
 from .measured.identify import identify_modes as identify_modes
 from .measured.model import ModelModes as ModelModes
-from .measured.records import frf_from_records as frf_from_records
 from .measured.ring_down import MeasuredBackbone as MeasuredBackbone
 from .measured.ring_down import ring_down as ring_down
 from .measured.ring_down import ring_down_of_frf as ring_down_of_frf

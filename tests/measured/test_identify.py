@@ -3,12 +3,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from faying import FRF, InputError, frf_from_records, identify_modes
+from faying import FRF, InputError, identify_modes
 from faying.measured.lsfd import compressed, refine, residues
 from faying.measured.mac import mac
 from faying.measured.poles import Rule, poles_by_order, tracks
 from faying.measured.text import read_frf_text
 from faying.measured.uff import read_uff
+from tests.helpers.hits import frf_of_hit
 
 MODES = ((60.0, 0.01), (180.0, 0.005), (420.0, 0.004), (620.0, 0.01), (870.0, 0.002))
 CLOSE = ((300.0, 0.004), (303.0, 0.006), (620.0, 0.01))  # 3 Hz apart, 2.4 and 3.6 Hz wide
@@ -264,12 +265,10 @@ def test_lines_that_the_estimator_cannot_take(synthetic):
 def test_a_window_that_took_all_the_damping():
     rate, n = 1024.0, 1024
     t = np.arange(n) / rate
-    force = np.zeros((1, n))
-    force[0, 0] = rate
-    response = (np.exp(-0.2 * t) * np.sin(2 * np.pi * 100 * t) / (2 * np.pi * 100))[None, None]
-    frf = frf_from_records(
-        force, response, rate, outputs=[(1, "z")], quantity="receptance", window="exponential", decay=9.0
-    )
+    force = np.zeros(n)
+    force[0] = rate
+    response = np.exp(-0.2 * t) * np.sin(2 * np.pi * 100 * t) / (2 * np.pi * 100)
+    frf = frf_of_hit(force, response, rate, "receptance", decay=9.0)
     wrong = FRF(
         **{k: getattr(frf, k) for k in ("frequency", "values", "outputs", "inputs", "quantity")}, window_decay=15.0
     )

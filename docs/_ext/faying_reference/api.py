@@ -46,7 +46,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
         *("Load", "Force", "Pressure", "Displacement"),
         *("Mesh", "read_mesh", "read_matrices", "Form", "Waviness", "GapMap", "FaceMap", "fit_form", "minimum_zone"),
     ),
-    "Tests": (*("FRF", "frf_from_records", "identify_modes", "read_uff", "write_uff", "ModelModes", "compare_modes"),),
+    "Tests": (*("FRF", "identify_modes", "read_uff", "write_uff", "ModelModes", "compare_modes"),),
     "Errors": ("FayingError", "InputError", "ReadError", "NotConverged"),
     "Others": (),
 }

@@ -74,29 +74,6 @@ class _Mumps:
         return np.asarray(self._context.solve(np.array(right, dtype=float, order="F")))
 
 
-class _Cholmod:
-    """CHOLMOD through scikit-sparse (GPL: only where the user has installed it)."""
-
-    name = "CHOLMOD"
-
-    def __init__(self, matrix: Any) -> None:
-        from scipy.sparse import csc_array, csc_matrix
-        from sksparse import cholmod
-
-        self.memory = guessed(matrix.shape[0])
-        check(self.memory, matrix.shape[0], self.name)
-        try:
-            if hasattr(cholmod, "cho_factor"):  # scikit-sparse from 0.5
-                self._solve = cholmod.cho_factor(csc_array(matrix), supernodal_mode="supernodal").solve
-            else:
-                self._solve = cholmod.cholesky(csc_matrix(matrix), mode="supernodal")
-        except cholmod.CholmodNotPositiveDefiniteError as fault:
-            raise NotConverged(f"CHOLMOD could not factorise the matrix ({fault}); is a part free to move?") from None
-
-    def solve(self, right: Array) -> Array:
-        return np.asarray(self._solve(right))
-
-
 class _SuperLU:
     """SciPy's SuperLU: always there, slow and hungry on solids."""
 
@@ -122,13 +99,12 @@ def _superlu(matrix: Any) -> tuple[Any, float]:
     return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric), memory
 
 
-_MODULE = {"pardiso": "pypardiso", "mumps": "mumps", "cholmod": "sksparse.cholmod", "superlu": "scipy"}
+_MODULE = {"pardiso": "pypardiso", "mumps": "mumps", "superlu": "scipy"}
 BY_PARTS = "pardiso-by-parts"  # a way to use PARDISO on structures; as a whole where there are no parts
 _BACKENDS: dict[str, Callable[[Any], Factorisation]] = {
     "pardiso": Pardiso,
     BY_PARTS: Pardiso,
     "mumps": _Mumps,
-    "cholmod": _Cholmod,
     "superlu": _SuperLU,
 }
 
