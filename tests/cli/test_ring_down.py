@@ -48,6 +48,21 @@ def test_a_decay_becomes_points_that_a_backbone_takes(record, capsys, tmp_path):
     assert plot.stat().st_size > 1000
 
 
+def test_a_record_that_begins_before_the_hit_keeps_its_time(record, capsys, tmp_path):
+    """--start is a time of the file, and so are the times that are printed."""
+    early = tmp_path / "early.csv"
+    head, *rows = record.read_text(encoding="utf-8").splitlines()
+    parted = (row.split(",") for row in rows)
+    early.write_text("\n".join([head, *(f"{float(t) - 0.5:.9g},{x}" for t, x in parted)]), encoding="utf-8")
+    found = [
+        json.loads(call(capsys, *args, *BAND, "--json")[1].out)
+        for args in ((early, "--start", "0 s"), (record, "--start", "0.5 s"))
+    ]
+    first, second = (np.array(one["time"]["values"]) for one in found)
+    assert first == pytest.approx(second - 0.5, abs=1e-6)
+    assert found[0]["acceleration"]["values"] == pytest.approx(found[1]["acceleration"]["values"], rel=1e-5)
+
+
 def test_the_example_gives_back_what_it_was_made_of(capsys, tmp_path):
     """Noise of .02 m/s2: .01 Hz and 5 % of the damping at 2.4 m/s2, where the record ends."""
     made = runpy.run_path(str(EXAMPLE / "make_record.py"))

@@ -120,11 +120,11 @@ class MeasuredBackbone(Summary):
         return write_text(Path(path), "\n".join([*rows, ""]))
 
 
-def read_record(path: str | Path) -> tuple[Array, float, Motion]:
+def read_record(path: str | Path) -> tuple[Array, float, Motion, float]:
     """Read the record of one sensor from a CSV file: time [s] and one motion, such as acceleration [m/s^2].
 
     Returns:
-        The samples (n,) in SI units, the sampling rate [1/s], and what was measured.
+        The samples (n,) in SI units, the sampling rate [1/s], what was measured, and when it begins [s].
 
     Raises:
         ReadError: with the file and the line, where it is not such a record or its samples are not evenly spaced.
@@ -142,7 +142,7 @@ def read_record(path: str | Path) -> tuple[Array, float, Motion]:
     if not step > 0 or apart.max() > UNEVEN * step:
         row = int(np.argmax(apart)) + 1
         raise ReadError(f"{path}, line {table.lines[row]}: samples must follow each other evenly; resample the record")
-    return table.values[found[0]], 1 / step, found[0]
+    return table.values[found[0]], 1 / step, found[0], float(time[0])
 
 
 @checked_call

@@ -16,7 +16,7 @@ from faying.text import json_text
 @click.command()
 @click.argument("record", type=PATH)
 @click.option("--band", required=True, metavar="LOW:HIGH", help='Band around this mode, for example "150 Hz:180 Hz".')
-@click.option("--start", metavar="TIME", help='Start of the free decay, for example "0.02 s" [of the record].')
+@click.option("--start", metavar="TIME", help='Start of the free decay, for example "0.02 s", in the time of the file.')
 @click.option("--impulse", metavar="TEXT", help='Impulse of the hit, if RECORD is an FRF, for example "0.3 N s".')
 @click.option(
     "--function", type=click.IntRange(1, 10_000), help="Number of the FRF in a universal file, from 1 [the only one]."
@@ -62,10 +62,10 @@ def decay(record: Path, options: dict[str, Any]) -> Any:
     if "numbers" in taken(record, "test", "numbers").serves:
         if options["impulse"] is not None or options["function"] is not None:
             raise InputError("--impulse and --function are for the FRF of a universal file; a record in time has none")
-        signal, rate, motion = read_record(record)
-        start = 0.0 if options["start"] is None else units.parse(options["start"], "s", name="--start")
-        found = ring_down(signal, rate, band=band, quantity=motion, cycles=cycles, start=start)
-        return replace(found, source=record.name)
+        signal, rate, motion, begin = read_record(record)
+        start = begin if options["start"] is None else units.parse(options["start"], "s", name="--start")
+        found = ring_down(signal, rate, band=band, quantity=motion, cycles=cycles, start=start - begin)
+        return replace(found, source=record.name, time=begin + found.time)
     if options["impulse"] is None:
         raise InputError(f'{record}: an FRF does not give the strength of the hit; give --impulse "0.3 N s"')
     if options["start"] is not None:
