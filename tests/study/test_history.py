@@ -120,3 +120,42 @@ def test_joints_of_one_structure_share_a_state(tmp_path):
         Study.read(study(tmp_path, ["4 kN", "4 kN"]))
     with pytest.raises(faying.InputError, match="state"):
         Study.read(study(tmp_path, BACK, "loose"))
+
+
+HELD = """[geometry.face]
+"lower.bottom" = { part = "lower", number = 3 }
+[[support]]
+face = "lower.bottom"
+"""
+
+
+@pytest.fixture(scope="module")
+def slipping(tmp_path_factory):
+    """Joints that slip while the bolt is tightened, at one or more preloads, as modelled."""
+    folder = tmp_path_factory.mktemp("slipping")
+
+    def at(*preloads, engine="reanalysis"):
+        path = study(folder, list(preloads))
+        text = path.read_text(encoding="utf-8").replace('joint" = "4 mm"', 'joint" = "8 mm"')
+        text = text.replace("[[joint]]\n", "[[joint]]\nfriction = 0.2\n", 1).replace('size = "8 mm"', 'size = "16 mm"')
+        text = text.replace("[modes]\n", HELD + "[modes]\nintervals = false\n")
+        path.write_text(text, encoding="utf-8")
+        return faying.run(path, engine=engine)
+
+    return at
+
+
+@pytest.mark.parametrize("engine", ["reanalysis", "direct"])
+def test_a_preload_with_friction_does_not_hang_on_those_that_were_solved_before_it(slipping, engine):
+    """Each is reached from faces without shear; 8 kN after 4 kN had 1.2e-4 of its frequency less than alone."""
+    alone, among = slipping("8 kN"), slipping("2 kN", "4 kN", "8 kN", engine=engine)
+    assert alone.slipping[-1, 0] > 0.05
+    assert among.frequencies[-1] == pytest.approx(alone.frequencies[-1], rel=1e-7)
+    assert among.slip[-1] == pytest.approx(alone.slip[-1], rel=1e-4, abs=1e-12)
+
+
+def test_a_falling_preload_keeps_the_shear_of_the_greatest_before_it_and_no_other(slipping):
+    first, short, long = slipping("8 kN"), slipping("12 kN", "8 kN"), slipping("8 kN", "12 kN", "8 kN")
+    assert long.frequencies[-1] == pytest.approx(short.frequencies[-1], rel=1e-7)
+    assert long.slip[-1] == pytest.approx(short.slip[-1], rel=1e-4, abs=1e-12)
+    assert np.abs(short.slip[-1] - first.slip[-1]).max() > 0.01 * first.slip[-1].max()

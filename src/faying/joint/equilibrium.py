@@ -105,12 +105,16 @@ class Equilibrium(ABC):
         self.parts = self.stiffness = stiffness
         self.joints = list(joints)
         self.friction = list(friction) if friction is not None else [None] * len(self.joints)
-        self._anchors = [np.zeros((len(interface.weights), 2)) for interface, _ in self.joints]
+        self.forget_slip()
         self._last: Array | None = None  # displacement under the load before, from which the next sets out
         self._known: tuple[Array, list[tuple[Array, Array, Array]]] | None = None  # joints where last asked
         self.nearest: Array | None = None  # displacement nearest to balance in the last `solve`
         self.factorisations = 0
-        self.first_loadings: dict[Hashable, PreloadState] = {}  # found before, by their preload
+        self.first_loadings: dict[Hashable, tuple[PreloadState, tuple[Array, ...]]] = {}
+
+    def forget_slip(self) -> None:
+        """Go on without the shear that earlier loads left: no load hangs on what was solved before it."""
+        self.anchors = [np.zeros((len(interface.weights), 2)) for interface, _ in self.joints]
 
     def with_laws(self, laws: Sequence[JointLaw]) -> None:
         """Go on with other laws of the joints."""
@@ -240,9 +244,9 @@ class Equilibrium(ABC):
             slipping.append(float(interface.weights @ slides / interface.weights.sum()))
             if np.any(slides):  # the shear that is left stays until the next load moves on
                 rest = slip_state.shear(move[:, 1:]) / np.where(slip_state.k_t > 0, slip_state.k_t, 1.0)[:, None]
-                self._anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self._anchors[index])
+                self.anchors[index] = np.where(slides[:, None], move[:, 1:] - rest, self.anchors[index])
             if slip_state.limit is not None:  # what moves while it is open starts without shear when it closes
-                self._anchors[index] = np.where((p > 0)[:, None], self._anchors[index], move[:, 1:])
+                self.anchors[index] = np.where((p > 0)[:, None], self.anchors[index], move[:, 1:])
         return tuple(slipping)
 
     def contact(self, u: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
@@ -275,7 +279,7 @@ class Equilibrium(ABC):
         return self._known[1]
 
     def _stick_slip(self, u: Array) -> list[StickSlip]:
-        known = zip(self._state(u), self.joints, self.friction, self._anchors, strict=True)
+        known = zip(self._state(u), self.joints, self.friction, self.anchors, strict=True)
         return [
             StickSlip(
                 k_t=law.stiffness(p, tabulated=True)[1],

@@ -33,17 +33,21 @@ def checked_preload(structure: BoltedStructure, assembly: Equilibrium, case: Pre
         carried = tuple(np.max(several, axis=0) for several in zip(*(one.pressures for one in before), strict=True))
         assembly.with_laws([joint.law for joint in structure.loaded_before(carried).joints])
         try:
-            return replace(_first_loading(structure, assembly, case), carried=carried)
+            return replace(_loaded(structure, assembly, case), carried=carried)
         finally:
             assembly.with_laws([joint.law for joint in structure.joints])
     key = case.forces, case.order
     if key not in assembly.first_loadings:
-        assembly.first_loadings[key] = _first_loading(structure, assembly, case)
-    return assembly.first_loadings[key]
+        assembly.forget_slip()
+        found = _loaded(structure, assembly, case)
+        assembly.first_loadings[key] = found, tuple(assembly.anchors)
+    found, anchors = assembly.first_loadings[key]
+    assembly.anchors = list(anchors)
+    return found
 
 
-def _first_loading(structure: BoltedStructure, assembly: Equilibrium, case: PreloadCase) -> PreloadState:
-    """One preload with the laws that the problem has at the time."""
+def _loaded(structure: BoltedStructure, assembly: Equilibrium, case: PreloadCase) -> PreloadState:
+    """One preload with the laws that the problem has at the time, from the shear that is left in it."""
     try:
         found = tighten(structure, assembly, case.forces, order=case.order)
     except NotConverged:
