@@ -25,7 +25,7 @@ result.plot()
 levels = np.geomspace(0.1, 1000.0, 13)
 alone = study.with_("modes.levels", [f"{level:.5g} m/s^2" for level in levels]).with_("modes.intervals", False)
 curves = faying.run(alone.with_("bolt.preload", "3 kN"))
-slip, frequencies = curves.level_slip[0], curves.level_frequencies[0]
+slip, frequencies = curves.levels.slip[0], curves.levels.frequencies[0]
 
 fig, axes = plt.subplots(1, 2, figsize=(8.0, 3.4), layout="constrained")
 for mode in range(slip.shape[1]):
