@@ -99,7 +99,7 @@ def run(
         collect(case, states, shapes, ends, notes, alternatives),
         waves=waves,
         interval=None if interval is None else interval.between(*ends),
-        mesh_error=None if mesh is None or interval is None else mesh.total,
+        mesh_error=None if mesh is None else mesh.total,
         bolt_numbers=bolts,
         vibrations=tuple(vibrations),
     )

@@ -82,7 +82,7 @@ class _Archive:
         if name in (*_OF_NODES, *_OF_ELEMENTS, "CDREAD", "/INPUT"):
             raise ReadError(
                 f"{self.path.name}, line {k + 1}: {name} changes nodes or elements or reads more of them, which is not "
-                "done here; write the archive anew with CDWRITE"
+                "done here; write the archive with CDWRITE once more"
             )
         if name in (*_CONSTRAINTS, *_MAKERS):
             self.commands.append(name)

@@ -113,7 +113,7 @@ class Equilibrium(ABC):
         self.first_loadings: dict[Hashable, tuple[PreloadState, tuple[Array, ...]]] = {}
 
     def forget_slip(self) -> None:
-        """Go on without the shear that earlier loads left: no load hangs on what was solved before it."""
+        """Go on without the shear that earlier loads left, so that no load depends on what was solved before it."""
         self.anchors = [np.zeros((len(interface.weights), 2)) for interface, _ in self.joints]
 
     def with_laws(self, laws: Sequence[JointLaw]) -> None:

@@ -348,9 +348,9 @@ def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path)
         _refuse_units([entry for entry in above if entry != plain[-1]], path)
         return found
     for number, line in reversed(above):
-        cells = split_heading(line.lstrip("# "))
-        if len(cells) == width and {role for cell in cells for role, names in ROLES.items() if names & _words(cell)}:
-            return read_layout(line.lstrip("# "), quantity, f"{path}, line {number}")
+        cells = split_heading(bare := line.lstrip("# "))
+        if len(cells) == width and any(names & _words(cell) for cell in cells for names in ROLES.values()):
+            return read_layout(bare, quantity, f"{path}, line {number}")
     _refuse_units(above, path)
     return plain_layout(width)
 

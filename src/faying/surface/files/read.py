@@ -163,22 +163,20 @@ def _scales(
     file: Path, layout: TextLayout, xy_unit: str | None, z_unit: str | None, lateral: Lateral
 ) -> tuple[float, float, float]:
     """Metres per unit of x, y and z of a text file."""
+    unread = f'"{layout.spoken}" is in words that are not read' if layout.spoken else ""
     if layout.units is not None:
         x, y, z = layout.units
         return x, y, z
     if layout.matrix and (lateral or layout.across is None):
         if not lateral or z_unit is None:
-            what = (
-                f'"{layout.spoken}" is in words that are not read' if layout.spoken else "it states no size and no unit"
-            )
             raise InputError(
-                f'{file}: a matrix of heights: {what}; {ASK_SIZE}, and z_unit, for example "um" (--z-unit um)'
+                f"{file}: a matrix of heights: {unread or 'it states no size and no unit'}; {ASK_SIZE},"
+                f' and z_unit, for example "um" (--z-unit um)'
             )
         return 1.0, 1.0, scale(z_unit, "m", name="z_unit")
     if xy_unit is None or z_unit is None:
         lacking = [n for n, u in (("xy_unit", xy_unit), ("z_unit", z_unit)) if u is None]
-        what = f'"{layout.spoken}" is in words that are not read' if layout.spoken else "the file states no unit"
-        raise InputError(f"{file}: {what}; give {' and '.join(lacking)}, {ASK_UNITS}")
+        raise InputError(f"{file}: {unread or 'the file states no unit'}; give {' and '.join(lacking)}, {ASK_UNITS}")
     xy = scale(xy_unit, "m", name="xy_unit")
     return xy, xy, scale(z_unit, "m", name="z_unit")
 

@@ -21,7 +21,7 @@ _NUMBER = re.compile(r"[+-]?(\d+(?:\.\d*)?|\.\d+)([eE][+-]?\d+)?$")
 _SIZE = re.compile(r"#\s*(?:Width|Breite|Height|Höhe):\s*(\S+)\s*(\S+)\s*$")
 _LATERAL = re.compile(r"#\s*Lateral units:\s*(\S+)\s*$")
 _HEIGHTS = re.compile(r"#\s*Value units:\s*(\S+)\s*$")
-_OF_PROGRAMS = ("Scan Data", "X;Y;valid")  # in the heads of Dektak and of HFM, which the library of instruments reads
+_DEKTAK, _HFM = "Scan Data", "X;Y;valid"  # lines of two heads that the library of instruments reads
 _MISSING = {"", "nan", "na", "n/a", "bad", "---", "***", "*"}
 
 
@@ -66,9 +66,9 @@ def layout(path: Path) -> TextLayout | None:
     """Return the layout of a text of numbers, None for any other file.
 
     A heading is a line such as "x [mm],y [mm],z [um]", or a comment, maybe with other lines above it and a row of units
-    below it; a matrix has four numbers in a row or more, and either no
-    heading, or a row and a column of positions with a word or nothing in their corner, or the comments of Gwyddion,
-    which state size and unit. Raises ReadError for decimal commas.
+    below it. A matrix has four numbers in a row or more, and either no heading, or a row and a column of positions with
+    a word or nothing in their corner, or the comments of Gwyddion, which state size and unit. Raises ReadError for
+    decimal commas.
     """
     with path.open("rb") as handle:
         head = handle.read(65536)
@@ -100,7 +100,7 @@ def layout(path: Path) -> TextLayout | None:
     if heading is not None:
         units, order = heading
         return TextLayout(columns=max(columns, len(order)), heading=above, units=units, order=order, spoken=spoken)
-    if any(line.strip().startswith(_OF_PROGRAMS) for line in lines[:above]):
+    if any(line.strip().startswith((_DEKTAK, _HFM)) for line in lines[:above]):
         return None
     if any(row is not None and len(row) in (2, 3) for row in found):
         return TextLayout(columns=columns, heading=above, units=units, spoken=spoken) if columns in (2, 3) else None
@@ -176,8 +176,8 @@ Heading = tuple[tuple[float, float, float] | None, tuple[int, ...]]
 def _headed(comments: list[str], lines: list[str], columns: int, path: Path) -> Heading | None:
     """The heading: the last line above the numbers, or the one above a row of units; else a comment that is one."""
     if not lines:
-        said = [line.lstrip("# ") for line in comments]
-        return next((_heading(line, path) for line in said if len(split_heading(line)) == columns), None)
+        bare = [line.lstrip("# ") for line in comments]
+        return next((_heading(line, path) for line in bare if len(split_heading(line)) == columns), None)
     units = row_of_units(split_heading(lines[-1]), ("m",) * columns)
     if units is None or len(lines) < 2:
         return _heading(lines[-1], path)
@@ -302,20 +302,22 @@ def refuse_lost(path: Path, points: int, *, unit: bool) -> None:
     spoken = next((line[:80] for line in head if not unit and _states_size(line)), None)
     if spoken is not None:
         raise ReadError(f'{path}: "{spoken}" speaks of a unit and is not read; take the line out, and give the unit')
-    rows = [_row(line) for _, line in lines[start:]]
-    marked = "X;Y;valid" in head
-    for (number, line), row in zip(lines[start:], rows, strict=True):
-        if row is None or len(row) != len(rows[0] or ()):
+    width = 0
+    for number, line in lines[start:]:
+        row = _row(line)
+        width = width or len(row or ())
+        if row is None or len(row) != width:
             refuse_decimal_comma(line, f"{path}, line {number}")
             raise ReadError(f'{path}: line {number} "{line[:40]}" is not a row of numbers as those above it')
-        if marked and row[-1] != 1:
+        if _HFM in head and row[-1] != 1:
             raise ReadError(f"{path}: line {number} is marked as not valid; take such lines out of the file")
-    units = [words.split()[-1] for words in head[-1].strip(", ").split(",")[:2]] if "Scan Data" in head else []
+    units = [words.split()[-1] for words in head[-1].strip(", ").split(",")[:2]] if _DEKTAK in head else []
     if units != ["um", "Micrometer"] and any(unit not in _UNITS for unit in units):
         raise ReadError(f'{path}: "{head[-1]}": the units that are read are {", ".join(_UNITS)}; write them there')
-    if points not in (len(rows), sum(len(row) for row in rows if row is not None)):
+    count = len(lines) - start
+    if points not in (count, count * width):
         raise ReadError(
-            f"{path}: {points} heights were read of {len(rows)} rows of numbers: the form of its head is not known"
+            f"{path}: {points} heights were read of {count} rows of numbers: the form of its head is not known"
         )
 
 
