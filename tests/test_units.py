@@ -23,6 +23,11 @@ from faying import InputError, units
         ("50 MPa/um", "Pa/m", 50e12),
         ("180 deg", "rad", 3.141592653589793),
         ("5 %", "", 0.05),
+        ("3000 rpm", "Hz", 50.0),
+        ("360 deg/s", "Hz", 1.0),
+        ("6.283185307179586 rad/s", "Hz", 1.0),
+        ("1 N^2/(rad/s)", "N^2/Hz", 6.283185307179586),
+        ("1 t", "kg", 1000.0),
     ],
 )
 def test_quantities(text, unit, value):
@@ -71,6 +76,7 @@ def test_units_are_names_and_one_number_not_expressions(text):
         ("3 mm^2", "not in a unit like m"),
         ("1e400 m", "not a finite"),
         ("3 florps", "not the name of a unit"),
+        ("3 ton", "a metric, a short or a long ton; write t"),
         ("3 " + 50 * "m" + "$", "not the name of a unit"),  # no search through all the ways to divide the letters
         ("3 m" + 1_000_000 * " " + "$", "not the name of a unit"),
     ],

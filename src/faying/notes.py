@@ -22,6 +22,7 @@ DECLARED: dict[Severity, str] = {
     "limit": """
         outside-validity beyond-law level-damping no-level-answer vibration-band no-level-damping window falls
         far-from-exact law-off law-not-compared slight-preload near-proof size waves-assumed bonded-by-ties viscous
+        seat-beyond-face
         uncertain-cut interval mesh-error few-samples surrogate-wide surrogate-rough stiff-elements backbone-ends
         backbone-bound model-modes test-modes part-mass left-out not-mixed loads-stick load-yields load-intervals
     """,

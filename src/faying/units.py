@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable
 from functools import cache
-from math import isfinite
+from math import isfinite, pi
 from typing import Any
 
 from faying.errors import InputError, shown
@@ -66,6 +66,7 @@ NUMBER = re.compile(r"\s*+([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9
 # a unit is names with whole powers, joined by * / . or a blank, maybe in brackets; "1/" may stand before one
 _NAME = r"[^\W\d_]++(?:_\w+)?(?:(?:\^|\*\*)-?[0-9]{1,2}|[²³])?"  # ++: letters are not divided in every way
 UNIT = re.compile(rf"(?:\s|\)(?:\^|\*\*)[0-9]|[*/·.()]|1(?=\s*/)|{_NAME})*+|%")
+SHORT_OR_LONG = re.compile(r"\btons?(?:_force)?\b")
 LONGEST = 60  # letters of a unit's name
 
 
@@ -87,16 +88,20 @@ def _factor(text: str, unit: str) -> float | None:
 def _pint_factor(text: str, unit: str) -> float | None:
     import pint
 
+    if (found := SHORT_OR_LONG.search(text)) is not None:
+        raise InputError(f"{found[0]!r} may be a metric, a short or a long ton; write t, short_ton or long_ton")
     if len(text) > LONGEST or UNIT.fullmatch(text) is None:
         raise InputError(f"{text[:LONGEST]!r} is not the name of a unit")
     plain = (
         re.sub(r"(?<=[^\W\d_])\s*\.\s*(?=[^\W\d_])", "*", text).replace("·", "*").replace("²", "^2").replace("³", "^3")
     )
     try:
-        nothing, one = (float(_registry().Quantity(value, plain).to(unit).magnitude) for value in (0.0, 1.0))
-        if nothing:
+        nothing, one = (_registry().Quantity(value, plain) for value in (0.0, 1.0))
+        if nothing.to(unit).magnitude:
             raise InputError(f"{text!r} has a zero of its own; give a difference, in K")
-        return one
+        # to pint an angle has no dimension, and rad/s are Hz
+        turns = one.to_root_units().unit_items() if "Hz" in unit else ()
+        return float(one.to(unit).magnitude / (2 * pi) ** dict(turns).get("radian", 0))
     except InputError:
         raise
     except pint.errors.DimensionalityError:

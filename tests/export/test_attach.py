@@ -118,6 +118,18 @@ def test_sets_of_the_study_are_the_parts_whatever_gives_the_pressure(tmp_path):
         attached(tmp_path, text=text.replace('"p0"', '"p7"', 1))
 
 
+def test_coarse_faces_with_springs_at_nodes_are_told_how_much_stiffer_they_turn(tmp_path):
+    """The trapezoidal rule with n elements a side has 1 + 2/n^2 of the second moment of a square."""
+
+    def said(n, **more):
+        mesh = two(("hex8", "hex8"), ((n, n), (n, n)), counts=(2, 2))
+        return [note for note in attached(tmp_path, mesh=mesh, **more).notes if "resist a turn" in note]
+
+    assert "by 50% more than the joint" in said(2)[0]
+    assert "by 12% more" in said(4)[0]
+    assert not said(8) + said(2, coupling="faces")
+
+
 def test_pressure_from_our_preload(tmp_path):
     found = attached(tmp_path, "solve", preload="3 kN")
     assert found.pairs.area @ found.pairs.pressure == pytest.approx(3000, rel=1e-8)

@@ -152,6 +152,7 @@ def test_messages():
         (lambda: PointMass(mass=0.0, face="a"), "must be positive"),
         (lambda: PointMass(mass=1.0), "on a face or at a point"),
         (lambda: PointMass(mass=1.0, face="a", point=(0.0, 0.0, 0.0)), "on a face or at a point"),
+        (lambda: PointMass(mass=1.0, point=(0.0, 0.0, 0.0), offset=(0.1, 0.0, 0.0)), "offset is from the centre of a"),
         (lambda: PointMass(mass=1.0, point=(50.0, 0.0, 0.0)).matrix(bar()), "mm away; the structure is between"),
         (lambda: Support(face="none").fixed(bar()), "no face is called 'none'"),
     ):

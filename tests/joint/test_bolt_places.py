@@ -7,11 +7,14 @@ import pytest
 
 import faying
 from faying.bolt.bolt import Bolt, Washer
+from faying.bolt.seat import Seat
 from faying.fe.holes import holes
 from faying.fe.interface import join
+from faying.fe.line import Line
 from faying.fe.mesh import Mesh
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
+from faying.joint.strength import least_seat_area
 from faying.joint.structure import Structure
 from tests.helpers.laws import Given
 from tests.helpers.sides import sides_on
@@ -84,9 +87,48 @@ def test_a_bolt_without_a_seat_presses_from_its_hole_to_its_head():
 def test_seats_are_where_the_axis_meets_the_faces_and_reach_from_the_hole_to_the_rim():
     mesh = rings()
     whole = bolt(at=None).fitted(mesh)
-    assert whole.extent == pytest.approx((2 * INNER, 2 * OUTER), rel=1e-6)
+    assert (whole.pressed[0].inner, whole.pressed[0].outer) == pytest.approx((2 * INNER, 2 * OUTER), rel=1e-6)
     np.testing.assert_allclose(whole.seats, CENTRE + np.array([[0, 0, 5e-3], [0, 0, -5e-3]]), atol=1e-6)
-    assert bolt().fitted(mesh).extent == pytest.approx((2 * INNER, 12e-3), rel=1e-9)
+    ring = bolt().fitted(mesh).pressed[0]
+    assert (ring.inner, ring.outer) == pytest.approx((2 * INNER, 12e-3), rel=1e-9)
+
+
+def test_a_seat_wider_than_its_face_counts_as_what_lies_on_it():
+    """A ring to 50 mm on a face that ends at 40 mm bears what the face has, and torque turns about its middle."""
+    mesh = rings()
+    wide = bolt(seat=(2 * INNER, "50 mm")).fitted(mesh)
+    seat = wide.pressed[0]
+    assert (seat.inner, seat.outer, seat.full) == (2 * INNER, pytest.approx(2 * OUTER, rel=1e-6), True)
+    assert least_seat_area(wide) == pytest.approx(np.pi * (OUTER**2 - INNER**2), rel=1e-6)
+    head, nut = structure(mesh, bolt(seat=(2 * INNER, "50 mm"))).notes
+    assert (head.code, nut.code) == ("seat-beyond-face", "seat-beyond-face")
+    share = (OUTER**2 - INNER**2) / (25e-3**2 - INNER**2)
+    assert f"of its ring of 9 mm to 50 mm only {share:.0%} lie on 'upper.top'" in head.text
+    narrow = bolt(seat=("2 mm", "12 mm")).fitted(mesh).pressed[0]  # what would lie in the hole bears nothing
+    assert (narrow.inner, narrow.area) == pytest.approx((2 * INNER, np.pi * (6e-3**2 - INNER**2)), rel=2e-2)
+    with pytest.raises(faying.InputError, match="meets nothing of its face"):
+        bolt(seat=("41 mm", "50 mm")).placed(mesh)
+
+
+@pytest.mark.parametrize("x", [0.0, 4e-3, 9e-3])
+def test_a_seat_over_an_edge_has_the_area_of_a_segment(x):
+    """A head whose axis is x from the straight edge of a plate."""
+    from tests.helpers.boxes import stack
+
+    mesh = stack([0.03, 0.03], [3, 3], width=0.02, height=0.06)
+    r, R = 4e-3, 8e-3
+    centre = mesh.points[mesh.face_nodes("p1.right")].mean(axis=0)
+    axis = np.array([1.0, 0.0, 0.0])
+    ends = mesh.points[mesh.face_nodes("p1.right")]
+    point = np.array([centre[0], centre[1], ends[:, 2].max() - x])
+
+    def inside(radius):
+        beyond = radius**2 * np.arccos(x / radius) - x * np.sqrt(radius**2 - x**2) if x < radius else 0.0
+        return np.pi * radius**2 - beyond
+
+    seat = Seat.of(mesh, "p1.right", Line(point=point, axis=axis), (2 * r, 2 * R))
+    assert seat.area == pytest.approx(inside(R) - inside(r), rel=1e-9)
+    assert (seat.full, bool(seat.beyond)) == (x > R, x < R)
 
 
 def test_a_seat_that_nothing_tells_is_asked_for():
@@ -145,7 +187,7 @@ def test_bolts_that_cross_at_an_angle_are_not_in_one_place():
 
     def place(name, axis):
         bolt = Bolt(name, ("both walls", f"{name}.nut"), diameter="8 mm", material=STEEL)
-        return BoltPlace(bolt=bolt, point=np.zeros(3), axis=np.array(axis, float), length=0.02, ring=None)
+        return BoltPlace(bolt=bolt, point=np.zeros(3), axis=np.array(axis, float), length=0.02, ring=None, pressed=())
 
     each_in_its_place([place("a", (0, 0, 1)), place("b", (1, 0, 0))])
     for axis in ((0, 0, 1), (0, 0, -1)):

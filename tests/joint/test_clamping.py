@@ -13,7 +13,7 @@ from faying.fe.interface import join
 from faying.joint.clamping import clamping, cone_of
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.load_path import LoadPaths, seat_ring
+from faying.joint.load_path import LoadPaths
 from faying.joint.structure import Structure
 from faying.numerics.modes import lowest_modes
 from tests.helpers.laws import Given
@@ -267,7 +267,8 @@ def test_two_bolts_share_a_joint_by_the_nearer_axis():
 
 def test_a_face_that_is_a_ring_is_a_seat():
     structure, *_ = sleeve()
-    assert seat_ring(structure.mesh, structure.fitted_bolts[0]) == pytest.approx((HOLE, 20e-3))
+    seat = structure.fitted_bolts[0].pressed[0]
+    assert (seat.inner, seat.outer, seat.full) == (pytest.approx(HOLE), pytest.approx(20e-3), True)
     area = pi / 4 * (20e-3**2 - HOLE**2)
     assert cone_of(structure, LoadPaths.of(structure), 0) == pytest.approx(26e-3 / (210e9 * area), rel=5e-3)
 

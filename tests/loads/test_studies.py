@@ -181,12 +181,16 @@ def test_faults_are_named(study, tmp_path, change, said):
 def test_names_that_the_geometry_lacks_are_named(study, tmp_path):
     text = study.read_text().replace('face = "upper.seat"\npressure', 'face = "upper.sea"\npressure')
     text = text.replace('bolt = "20 K"', 'nut = "20 K"')
+    text += (
+        '\n[[load]]\nname = "lift"\n[[load.displacement]]\nface = "upper.seat"\ndisplacement = ["1 um", "0 m", "0 m"]\n'
+    )
     (tmp_path / "two-blocks.step").write_bytes((study.parent / "two-blocks.step").read_bytes())
     (tmp_path / "study.toml").write_text(text)
     with pytest.raises(faying.InputError) as fault:
         faying.load_cases(tmp_path / "study.toml")
     assert "load 'push' names the face 'upper.sea', which does not exist" in str(fault.value).replace('"', "'")
     assert "temperature of 'nut', which is neither a part nor a bolt" in str(fault.value)
+    assert "load 'lift' moves the face 'upper.seat' along x, in which no rigid support holds it" in str(fault.value)
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import pytest
 
 import faying
 from faying.bolt.bolt import BoltPlace
+from faying.bolt.seat import Seat
 from faying.bolt.vdi2230 import cone_angle
 from faying.geometry.face_triangles import FaceTriangles
 from faying.setup.reach import WIDE, load_shares
@@ -27,7 +28,8 @@ def strips(*edges):
 def shared(mesh, count, depths=None, ring=(HOLE, SEAT)):
     bolt = faying.Bolt("bolt", ("up 0", "down 0"), seat=ring)
     axis = np.array([0.0, 0.0, -1.0])
-    place = BoltPlace(bolt=bolt, point=np.array([0, 0, DEPTH]), axis=axis, length=LENGTH, ring=ring)
+    pressed = (Seat(inner=ring[0], outer=ring[1], area=1e-4),)
+    place = BoltPlace(bolt=bolt, point=np.array([0, 0, DEPTH]), axis=axis, length=LENGTH, ring=ring, pressed=pressed)
     names = [f"joint {k}" for k in range(count)]
     found = load_shares(
         mesh,

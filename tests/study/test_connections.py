@@ -180,6 +180,28 @@ def test_laws_that_a_scan_gives_are_read_with_what_changes_them(folder):
         study(folder, law=law)
 
 
+@pytest.mark.parametrize(
+    ("given", "diameter", "pitch", "bearing"),
+    [
+        ({}, 8e-3, 1.25e-3, 10.4e-3),
+        ({"seat": ["9 mm", "16 mm"]}, 8e-3, 1.25e-3, 12.5e-3),
+        ({"thread": "M8x1"}, 8e-3, 1e-3, 10.4e-3),
+        ({"washer": [WASHER]}, 8e-3, 1.25e-3, 12.2e-3),
+        ({"diameter": "6.8 mm", "thread": "M8"}, 8e-3, 1.25e-3, 10.4e-3),
+        ({"diameter": "6.8 mm", "thread": "M8", "grade": "8.8"}, 8e-3, 1.25e-3, 10.4e-3),
+    ],
+)
+def test_a_torque_turns_the_thread_and_the_seat_that_are_given(folder, given, diameter, pitch, bearing):
+    """VDI 2230, R13, the other way: T = F (0.16 P + 0.58 d2 mu_G + D_Km/2 mu_K)."""
+    frictions = {"torque": "20 N m", "thread_friction": 0.12, "head_friction": 0.14}
+    found = study(folder, bolt=[BOLT | SHANK | frictions | given]).loads
+    arm = 0.16 * pitch + 0.58 * (diameter - 0.64952 * pitch) * 0.12 + bearing / 2 * 0.14
+    assert found == pytest.approx((20.0 / arm,), rel=1e-9)
+    factor = {"torque": "20 N m", "nut_factor": 0.2}
+    found = study(folder, bolt=[BOLT | SHANK | factor | given]).loads
+    assert found == pytest.approx((20.0 / (0.2 * diameter),))
+
+
 def test_torque_with_friction(folder):
     given = BOLT | SHANK | {"torque": "20 N m", "pitch": "1.25 mm", "thread_friction": 0.12, "head_friction": 0.14}
     exact = torque_to_preload(20.0, 8e-3, pitch=1.25e-3, thread_friction=0.12, head_friction=0.14)
@@ -191,6 +213,12 @@ def test_torque_with_friction(folder):
     [
         ({}, r'preload is missing; give a force such as "12 kN", or torque = "20 N m"'),
         ({"preload": "1 kN", "torque": "1 N m"} | SHANK, "both preload and torque"),
+        ({"preload": "1 kN", "nut_factor": 0.2}, "nut_factor turns a torque into a preload, which is given; leave it"),
+        (
+            {"torque": "1 N m", "nut_factor": 0.2, "thread_friction": 0.1} | SHANK,
+            "nut_factor and thread_friction, which all turn its torque into a preload; give nut_factor, or the",
+        ),
+        ({"preload": "1 kN", "head_mass": "5 g"}, "has head_mass, but no diameter and material"),
         ({"torque": "1 N m", "nut_factor": 0.2}, "only with the thread's diameter; add diameter"),
         ({"torque": "1 N m"} | SHANK, "add nut_factor"),
         ({"torque": "1 N m", "nut_factor": 7} | SHANK, "nut_factor = 7 should be a plain number from 0.02 to 1"),

@@ -59,7 +59,7 @@ def bolt_numbers(case: Case, states: Sequence[LoadedCase], shapes: Sequence[Arra
         modal_force=motion,
         modal_force_by_acceleration=motion / omega[:, :, None] ** 2,
         proof_share=forces / [NAN if b.bolt.fastener is None else b.bolt.fastener.proof_load for b in bolts],
-        seat_pressure=forces / [least_seat_area(structure, one) for one in bolts],
+        seat_pressure=forces / [least_seat_area(one) for one in bolts],
         seat_limit=np.array([_limit(structure, one) for one in bolts]),
         embedding=embedding,
         embedding_loss=_embedding_of(structure, found, embedding) / (bolt + members),
@@ -80,7 +80,7 @@ def _limit(structure: Structure, fitted: FittedBolt | FittedSolidBolt) -> float:
     """The pressure [Pa] that the softer of a bolt's seats bears; NaN for a meshed bolt, or where one is not known."""
     if not isinstance(fitted, FittedBolt):
         return NAN
-    limits = [seat_limit(structure, face) for face in fitted.bolt.faces]
+    limits = [seat_limit(structure, face) for face, _ in zip(fitted.bolt.faces, fitted.pressed, strict=False)]
     return NAN if None in limits else min(limit[0] for limit in limits if limit is not None)
 
 

@@ -8,9 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from faying.bolt.seat import Seat
 from faying.bolt.tapped import INSIDE, RoundHole, engaged_length, round_hole
 from faying.bolt.threads import THICKEST, THINNEST, Fastener, Thread
-from faying.bolt.vdi2230 import HEADS, BoltSection, Head, bolt_sections
+from faying.bolt.vdi2230 import HEADS, BoltSection, Head, bolt_sections, tightening_torque
 from faying.checks import number
 from faying.errors import InputError
 from faying.fe.attach import DepthBand, Ring, mean_motion
@@ -42,12 +43,14 @@ def torque_to_preload(
     pitch: float | None = None,
     thread_friction: float | None = None,
     head_friction: float | None = None,
+    bearing: float | None = None,
 ) -> float:
     """Return the preload [N] that a tightening torque [N m] gives a metric thread.
 
     diameter of the thread [m]; either nut_factor K [-], F = T/(K d), or pitch [m] and both friction coefficients [-]:
-    F = T/(P/2pi + 0.577 d2 mu_thread + D_b/2 mu_head), d2 = d - 0.6495 P, the bearing's mean diameter D_b = 1.3 d
-    (ISO 16047:2005; Bickford, doi:10.1201/9780849381898, for K). Raises InputError where neither set is complete.
+    F = T/(0.16 P + 0.58 d2 mu_thread + D_Km/2 mu_head), d2 = d - 0.6495 P; bearing: D_Km, the mean diameter of the seat
+    [m], 1.3 d where None (VDI 2230, R13; Bickford, doi:10.1201/9780849381898, for K). Raises InputError where neither
+    set is complete.
     """
     if torque <= 0 or diameter <= 0:
         raise InputError(f"torque {torque:g} N m and diameter {diameter:g} m must both be positive")
@@ -60,8 +63,9 @@ def torque_to_preload(
         )
     for name, friction in (("thread_friction", thread_friction), ("head_friction", head_friction)):
         _between(friction, name, BOLT_FRICTION)
-    flank = (diameter - 0.6495 * pitch) / 2 * thread_friction / np.cos(np.pi / 6)
-    return float(torque / (pitch / (2 * pi) + flank + 0.65 * diameter * head_friction))
+    thread = Thread(diameter=diameter, pitch=pitch)
+    bearing = (ACROSS_FLATS + CLEARANCE) / 2 * diameter if bearing is None else bearing
+    return torque / tightening_torque(1.0, thread.pitch, thread.pitch_diameter, thread_friction, bearing, head_friction)
 
 
 def _between(value: float, name: str, ends: tuple[float, float]) -> float:
@@ -166,7 +170,7 @@ class Bolt:
     thread: Thread | None
     shank: float | None
     head: Head
-    friction: tuple[float, float] | None
+    friction: tuple[float | None, float | None]
     part: ClassVar[None] = None  # it is not a part of the mesh
 
     def __init__(
@@ -186,7 +190,7 @@ class Bolt:
         thread: Thread | str | None = None,
         shank: float | str | None = None,
         head: Head = "hexagon",
-        friction: tuple[float, float] | None = None,
+        friction: tuple[float | None, float | None] = (None, None),
     ) -> None:
         what = f"bolt {name!r}"
         if (diameter is None) != (material is None):
@@ -264,9 +268,7 @@ class Bolt:
                 f"bolt {self.name!r}: its shank is {show(self.shank, 'm')} long, but its thread begins to engage "
                 f"{show(place.free, 'm')} below its head; give a length from 0 to that"
             )
-        radius = Line(point=point, axis=place.axis).about(mesh.points[mesh.face_nodes(self.faces[0])])[0]
-        extent = seat or (2 * float(radius.min()), 2 * float(radius.max()))
-        return FittedBolt(**vars(place), ends=ends, extent=extent, E_tapped=tapped)
+        return FittedBolt(**vars(place), ends=ends, E_tapped=tapped)
 
     def placed(self, mesh: NamedFaces) -> "BoltPlace":
         """Return where the bolt lies.
@@ -316,7 +318,9 @@ class Bolt:
             )
         hole = self._hole(mesh, self.faces, centre_a, axis / length)
         ring = self._seat(hole, alone=self.at is None)
-        return BoltPlace(bolt=self, point=centre_a, axis=axis / length, length=length, ring=ring)
+        line = Line(point=centre_a, axis=axis / length)
+        pressed = tuple(Seat.of(mesh, face, line, ring) for face in self.faces)
+        return BoltPlace(bolt=self, point=line.point, axis=line.axis, length=length, ring=ring, pressed=pressed)
 
     def _screwed(self, mesh: NamedFaces, wall: RoundHole) -> "BoltPlace":
         """Where a bolt lies that is screwed into a tapped hole: on the axis of the hole."""
@@ -336,14 +340,15 @@ class Bolt:
             )
         diameter = self.diameter or 2 * hole.radius
         engaged = engaged_length(self.engaged, hole, diameter, self.name)
-        found = self._hole(mesh, (first,), hole.point, hole.axis)
+        ring = self._seat(self._hole(mesh, (first,), hole.point, hole.axis), alone=False)
         return BoltPlace(
             bolt=self,
             point=hole.point - free * hole.axis,
             axis=hole.axis,
             length=free + min(INSIDE * diameter, engaged),
             inside=min(INSIDE * diameter, engaged),
-            ring=self._seat(found, alone=False),
+            ring=ring,
+            pressed=(Seat.of(mesh, first, Line(point=hole.point, axis=hole.axis), ring),),
             thread=DepthBand(point=hole.point, axis=hole.axis, low=0.0, high=engaged),
         )
 
@@ -431,9 +436,10 @@ def frame_about(axis: Array) -> Array:
 class BoltPlace:
     """Where a bolt lies.
 
-    point [m] and axis (3,): from head to nut; length [m]: clamped; ring: inner and outer diameter [m] of the seats,
-    None for whole faces; thread: what the bolt engages of a tapped hole, None where it has a nut; inside: how much of
-    the length lies in a tapped hole [m].
+    point [m] and axis (3,): from head to nut; length [m]: clamped; ring: inner and outer diameter [m] of head and nut,
+    None for whole faces; pressed: the seats, that under the head first, one alone where there is no nut; thread: what
+    the bolt engages of a tapped hole, None where it has a nut; inside: how much of the length lies in a tapped hole
+    [m].
     """
 
     bolt: Bolt
@@ -441,6 +447,7 @@ class BoltPlace:
     axis: Array
     length: float
     ring: tuple[float, float] | None
+    pressed: tuple[Seat, ...]
     thread: DepthBand | None = None
     inside: float = 0.0
 
@@ -462,6 +469,8 @@ class BoltPlace:
             ring = " to ".join(show(d, "m") for d in self.ring)
             text = f"bolt {bolt.name!r} has no seat: it presses a ring of {ring}, from its hole and its size"
             notes.append(Note(code="bolt-seat", text=text))
+        wide = [f"bolt {bolt.name!r}: {seat.beyond}" for seat in self.pressed if seat.beyond]
+        notes += [Note(code="seat-beyond-face", text=text) for text in wide]
         if self.thread is not None and bolt.engaged is None:
             length = show(self.thread.high, "m", digits=3)
             text = f"bolt {bolt.name!r}: its thread engages {length} of its tapped hole; engaged gives another length"
@@ -512,12 +521,11 @@ def _thread_notes(bolt: Bolt, metric: Thread | None) -> list[Note]:
 class FittedBolt(BoltPlace):
     """A bolt in its place on a mesh.
 
-    ends: mean motions (6, unknowns) of both seats; extent: `ring`, or the least and greatest diameter [m] of the whole
-    first face about the axis; E_tapped: Young's modulus [Pa] of the part that is tapped, None where the bolt has a nut.
+    ends: mean motions (6, unknowns) of both seats; E_tapped: Young's modulus [Pa] of the part that is tapped, None
+    where the bolt has a nut.
     """
 
     ends: tuple[Any, ...]
-    extent: tuple[float, float]
     E_tapped: float | None = None
 
     @cached_property

@@ -154,6 +154,11 @@ def thread_torque(F: float, P: float, d_2: float, mu_G: float) -> float:
     return F * (0.16 * P + 0.58 * d_2 * mu_G)
 
 
+def tightening_torque(F: float, P: float, d_2: float, mu_G: float, D_Km: float, mu_K: float) -> float:
+    """Torque [N m] that tightens a bolt to F [N], the friction under its head included (R13)."""
+    return thread_torque(F, P, d_2, mu_G) + F * D_Km * mu_K / 2
+
+
 def reduced_stress(F: float, d_0: float, torque: float) -> float:
     """Von Mises stress [Pa] at assembly, the shear stress even over the section of diameter d_0 [m]."""
     return sqrt((F / (pi / 4 * d_0**2)) ** 2 + 3 * (torque / (pi / 12 * d_0**3)) ** 2)

@@ -272,7 +272,7 @@ def name_faults(
         for key, what, name, face in named_faces(study)
         if face not in faces
     ]
-    faults += _heated(study)
+    faults += [*_heated(study), *_moved(study)]
     faults += [
         (f"vibration[{k}]", not_held(one.name))
         for k, one in enumerate(study.vibrations, 1)
@@ -345,6 +345,24 @@ def named_faces(study: Study) -> list[tuple[str, str, str, str]]:
             if one.face is not None
         ]
     return named
+
+
+def _moved(study: Study) -> list[tuple[str, str]]:
+    """Displacements of loads along directions in which no support without stiffness holds the face."""
+    held = [
+        (one.face, axis) for one in study.supports if one.stiffness is None and one.whole for axis in one.directions
+    ]
+    return [
+        (
+            f"load[{k}].displacement[{n}].displacement",
+            f"load {load.name!r} moves the face {one.face!r} along {axis}, in which no rigid support holds it; give it "
+            "a [[support]] without stiffness in that direction, or a force in place of the displacement",
+        )
+        for k, load in enumerate(study.load_cases, 1)
+        for n, one in enumerate(load.displacements, 1)
+        for axis, size in zip("xyz", one.displacement, strict=True)
+        if size and (one.face, axis) not in held
+    ]
 
 
 def _heated(study: Study) -> list[tuple[str, str]]:

@@ -11,7 +11,7 @@ from faying.files import write_text
 
 @click.command()
 @click.argument("study", type=PATH)
-@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
+@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: the last).')
 @click.option("--html", "page", type=PATH, help="Write the sheets as a page, with all formulas.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units.")
 @progress_options

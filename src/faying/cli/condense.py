@@ -21,7 +21,7 @@ NUMBER = click.IntRange(1, 99_999_999)  # eight digits, the field of a bulk data
 @click.command()
 @click.argument("study", type=PATH)
 @click.option("--joint", metavar="NAME", help="Joint of the study; the only one where left out.")
-@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
+@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: the last).')
 @click.option("--point-a", metavar="POINT", help='Point of the first face, "0 mm; 10 mm; 5 mm" (default: its centre).')
 @click.option("--point-b", metavar="POINT", help="Point of the second face.")
 @click.option("--superelement", "whole", is_flag=True, help="The whole structure, reduced to interfaces and modes.")

@@ -10,7 +10,7 @@ from faying.cli.progress import Form, Shown, progress_options
 
 @click.command()
 @click.argument("study", type=PATH)
-@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: greatest).')
+@click.option("--preload", metavar="FORCE", help='Preload of the study, such as "8 kN" (default: the last).')
 @click.option("--no-modes", is_flag=True, help="Leave out the modes about each loaded state.")
 @click.option("--intervals", is_flag=True, help="Find 90 % intervals over the scatter of preload and friction.")
 @click.option("--out", type=PATH, help="Write all numbers and pressure maps as NetCDF (.nc).")

@@ -93,6 +93,7 @@ def _table(file: Path) -> tuple[Index, Array]:
 SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
 TOUCHING = 1e-6  # of the structure's size: a gap above it is noted
 UNKNOWN_FRICTION = 0.2
+STIFFER = 0.05  # of the joint's resistance to a turn: springs at nodes that exceed it by more are noted
 VALID = "validity: the law is within its validity range everywhere"
 
 
@@ -220,6 +221,16 @@ def attach(
             "the meshes of the faces do not match: springs per area, exact, between all nodes that share an overlap; "
             "some of them are negative"
         )
+    if pairs.lumped:
+        at_nodes = _turning(mesh.points[pairs.first], pairs.area * law.stiffness(used)[0])
+        exact = _turning(interface.positions, interface.weights * law.stiffness(at_points)[0])
+        if at_nodes > (1 + STIFFER) * exact:
+            notes.append(
+                f"the mesh of the faces is coarse: springs node by node resist a turn of the joint by "
+                f"{percent(at_nodes / max(exact, 1e-300) - 1)} more than the joint does; --coupling faces is exact"
+            )
+    if spec.form is not None:
+        notes.append("between bent faces a pressure has no one closure: the deck has no contact table, only springs")
     viscous = None if at_frequency is None else np.asarray(pairs.loss / (2 * np.pi * at_frequency))
     area = pairs.area if pairs.lumped else interface.weights
     flags = _flags(law, used, area)
@@ -355,6 +366,11 @@ def _pairs(interface: Interface, law: JointLaw, pressure: Array, coupling: str) 
             at_nodes = interface.to_nodes(nodes, pressure)
             return lumped(nodes, (*law.stiffness(at_nodes), *law.loss(at_nodes)), at_nodes), at_nodes
     return consistent(interface, (*law.stiffness(pressure), *law.loss(pressure))), pressure
+
+
+def _turning(places: Array, k_n: Array) -> float:
+    """Sum of normal stiffness [N/m] times squared distance from its own middle [N m], of places (n, 3) [m]."""
+    return float(k_n @ ((places - k_n @ places / max(k_n.sum(), 1e-300)) ** 2).sum(axis=1))
 
 
 def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:

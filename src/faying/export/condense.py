@@ -372,7 +372,7 @@ def condense(
     Args:
         study: The study, or the path of its file.
         joint: Name of the joint; the only one where None.
-        preload: Which of the study's preloads, as text with a unit; the greatest where None.
+        preload: Which of the study's preloads, as text with a unit; the last where None.
         points: Of the first face and of the second, x, y, z [m] or text with units; the
             centre of the joint's normal springs where None.
         report: Called as each stage begins.

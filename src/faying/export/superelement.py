@@ -181,7 +181,7 @@ def superelement(
             with units. A face gives six unknowns, its mean motion; a point the three of the node nearest to it.
         up_to: Frequency up to which the modes are right [Hz], or text with a unit; that of the study's last mode where
             None.
-        preload: Which of the study's preloads, as text with a unit; the greatest where None.
+        preload: Which of the study's preloads, as text with a unit; the last where None.
         report: Called as each stage begins.
 
     Returns:

@@ -7,6 +7,8 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.fe.elasticity import unit_motions
+from faying.fe.line import across
+from faying.fe.overlap import pieces
 from faying.fe.sides import Blocks, sampled
 from faying.typing import Array
 
@@ -26,6 +28,32 @@ class Ring:
         arm = place - self.point
         radius = np.linalg.norm(arm - (arm @ unit)[..., None] * unit, axis=-1)
         return np.asarray((radius >= self.inner) & (radius <= self.outer), dtype=float)
+
+    def area_on(self, points: Array, blocks: Blocks) -> float:
+        """Area [m2] of a face inside the ring, seen along the axis; curved edges of elements count as two chords."""
+        corners = (pieces(points, blocks).corners - self.point) @ across(self.axis / np.linalg.norm(self.axis))
+        ends = np.roll(corners, -1, axis=1)
+        return abs(_inside(corners, ends, self.outer) - _inside(corners, ends, self.inner))
+
+
+def _inside(start: Array, end: Array, radius: float) -> float:
+    """Area [m2] inside a circle about the origin of triangles between it and edges (..., 2), against the clock > 0.
+
+    Of each edge the part within the circle makes a triangle, and what is outside on either side of it a sector.
+    """
+
+    def cross(one: Array, other: Array) -> Array:
+        return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
+
+    def sector(one: Array, other: Array) -> Array:
+        return np.asarray(radius**2 * np.arctan2(cross(one, other), (one * other).sum(axis=-1)))
+
+    along = end - start
+    square = np.maximum((along**2).sum(axis=-1), np.finfo(float).tiny)
+    nearest = -(start * along).sum(axis=-1) / square
+    half = np.sqrt(np.maximum(nearest**2 - ((start**2).sum(axis=-1) - radius**2) / square, 0.0))
+    enters, leaves = (start + np.clip(nearest + sign * half, 0, 1)[..., None] * along for sign in (-1, 1))
+    return float((sector(start, enters) + cross(enters, leaves) + sector(leaves, end)).sum() / 2)
 
 
 @dataclass(frozen=True, kw_only=True)

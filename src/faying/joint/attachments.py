@@ -117,6 +117,8 @@ class PointMass:
             raise InputError(f"point mass {self.mass:g} kg must be positive")
         if (self.face is None) == (self.point is None):
             raise InputError("a point mass sits on a face or at a point; give one of the two")
+        if self.point is not None and any(self.offset):
+            raise InputError("offset is from the centre of a face, and this point mass sits at a point; leave one out")
 
     def matrix(self, mesh: Mesh) -> Any:
         """Sparse mass matrix [kg] (unknowns, unknowns)."""

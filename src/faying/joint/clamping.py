@@ -19,7 +19,7 @@ from faying.errors import NotConverged
 from faying.fe.elasticity import strain_energy
 from faying.fe.interface import Interface
 from faying.joint.bolted import BoltedStructure
-from faying.joint.load_path import LEVEL, LoadPaths, seat_ring
+from faying.joint.load_path import LEVEL, LoadPaths
 from faying.joint.springs import Springs
 from faying.numerics.modes import Modes
 from faying.numerics.product import product
@@ -154,8 +154,8 @@ def cone_of(structure: BoltedStructure, paths: LoadPaths, index: int) -> float:
     fitted, mesh, cuts = structure.fitted_bolts[index], structure.mesh, paths.cuts[index]
     if not isinstance(fitted, FittedBolt) or not cuts:
         return NAN
-    seat = seat_ring(mesh, fitted)
-    if seat is None:
+    seat = fitted.pressed[0]
+    if not seat.full:
         return NAN
     ends = [mesh.face_part[face] for face in fitted.bolt.faces]
     names = [*(cut.parts[0] for cut in cuts), cuts[-1].parts[1]]
@@ -166,8 +166,8 @@ def cone_of(structure: BoltedStructure, paths: LoadPaths, index: int) -> float:
     if tapped and abs(lengths[-1]) <= LEVEL * depths[-1]:  # threaded up to the joint
         names, lengths = names[:-1], lengths[:-1]
     sections = [(length, structure.materials[part].E) for length, part in zip(lengths, names, strict=True)]
-    outer = float(np.mean([np.sqrt(4 * cut.area / np.pi + seat[0] ** 2) for cut in cuts]))
-    outer = min(outer, WIDEST * seat[1])
-    if outer <= seat[0] or min(lengths) <= 0:
+    outer = float(np.mean([np.sqrt(4 * cut.area / np.pi + seat.inner**2) for cut in cuts]))
+    outer = min(outer, WIDEST * seat.outer)
+    if outer <= seat.inner or min(lengths) <= 0:
         return NAN
-    return cone_compliance(sections, seat=seat[1], hole=seat[0], outer=outer, tapped=tapped)
+    return cone_compliance(sections, seat=seat.outer, hole=seat.inner, outer=outer, tapped=tapped)

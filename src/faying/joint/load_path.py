@@ -12,7 +12,8 @@ import numpy as np
 
 from faying.bolt.bolt import BoltPlace
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidPlace
-from faying.fe.sides import NamedFaces, face_centre, nodes_of
+from faying.fe.line import Line
+from faying.fe.sides import NamedFaces, nodes_of
 from faying.fe.solids import bodies_of
 from faying.joint.bolted import BoltedStructure
 from faying.typing import Array, Index, Mask
@@ -22,7 +23,6 @@ Placed = BoltPlace | FittedSolidBolt | SolidPlace
 REACH = 1.5  # outer diameters of the seat: the widest cone of VDI 2230 is about as wide under usual clamped lengths
 LEVEL = 1e-3  # of the length from seat to seat: a joint nearer to a seat lies in its plane, beside the bolt
 FACING = 0.5  # cosine between axis and normal: a steeper joint slides under the bolt's force, and is not clamped by it
-ROUND = 0.03  # of the area of a ring between its least and greatest radius: a face that differs by more is none
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,9 +40,11 @@ class BoltLine:
     @classmethod
     def of(cls, mesh: NamedFaces, placed: Placed) -> "BoltLine":
         """Return the line of a bolt in its place; a seat that is not a ring counts as wide as its face."""
-        ring = seat_ring(mesh, placed) if isinstance(placed, BoltPlace) else None
-        outer = 2 * float(_radii(mesh, placed).max()) if ring is None else ring[1]
-        return cls(seats=placed.seats, reach=REACH * outer)
+        if isinstance(placed, BoltPlace):
+            return cls(seats=placed.seats, reach=REACH * placed.pressed[0].outer)
+        line = cls(seats=placed.seats, reach=0.0)
+        nodes = nodes_of(mesh.face(placed.bolt.faces[0]))
+        return cls(seats=placed.seats, reach=2 * REACH * float(line.distance(mesh.points[nodes]).max()))
 
     @property
     def length(self) -> float:
@@ -60,7 +62,7 @@ class BoltLine:
 
     def distance(self, positions: Array) -> Array:
         """Distance [m] of places (q, 3) from the axis."""
-        return distance_from(self.seats[0], self.axis, positions)
+        return Line(point=self.seats[0], axis=self.axis).about(positions)[0]
 
     def passes(self, positions: Array, normals: Array) -> Mask:
         """Which places (q, 3) [m] of a joint with these normals (q, 3) the bolt passes."""
@@ -202,27 +204,3 @@ def _cuts(passed: Sequence[_Passed], body: Mapping[str, int]) -> tuple[Cut, ...]
             )
         )
     return tuple(out)
-
-
-def distance_from(point: Array, axis: Array, positions: Array) -> Array:
-    """Distance [m] of places (q, 3) from the line through a point (3,) along a unit vector (3,)."""
-    arm = positions - point
-    return np.asarray(np.linalg.norm(arm - (arm @ axis)[:, None] * axis, axis=1))
-
-
-def seat_ring(mesh: NamedFaces, placed: BoltPlace) -> tuple[float, float] | None:
-    """Inner and outer diameter [m] of the seat: as given, or those of the face under the head where it is a ring."""
-    if placed.ring is not None:
-        return placed.ring
-    radius = _radii(mesh, placed)
-    inner, outer = float(radius.min()), float(radius.max())
-    inner = inner if inner > 0.05 * outer else 0.0  # nodes about the centre of a face without a hole
-    area = face_centre(mesh.points, mesh.face(placed.bolt.faces[0]))[2]
-    return (2 * inner, 2 * outer) if abs(np.pi * (outer**2 - inner**2) / area - 1) < ROUND else None
-
-
-def _radii(mesh: NamedFaces, placed: Placed) -> Array:
-    """Distance [m] of the nodes of the face under the head from the axis."""
-    line = placed.seats[1] - placed.seats[0]
-    nodes = nodes_of(mesh.face(placed.bolt.faces[0]))
-    return distance_from(placed.seats[0], line / np.linalg.norm(line), mesh.points[nodes])

@@ -9,7 +9,7 @@ import numpy as np
 from faying.bolt.bolt import Bolt, BoltPlace, FittedBolt
 from faying.bolt.solid_bolt import FittedSolidBolt, SolidBolt, SolidPlace
 from faying.fe.elasticity import Solid
-from faying.fe.sides import NamedFaces, face_centre
+from faying.fe.sides import NamedFaces
 from faying.joint.bolted import BoltedStructure
 from faying.notes import Note, percent
 from faying.typing import Array
@@ -120,19 +120,9 @@ def _shank(bolt: Bolt, force: float) -> list[Note]:
     return [Note(code="bolt-yield", load=force, text=text)]
 
 
-def seat_area(structure: Bolted, fitted: FittedBolt | BoltPlace, face: str) -> float:
-    """Area [m2] that the head or nut of a bolt presses on a face."""
-    if fitted.ring is None:
-        return float(face_centre(structure.mesh.points, structure.mesh.face(face))[2])
-    inner, outer = fitted.ring
-    return pi / 4 * (outer**2 - inner**2)
-
-
-def least_seat_area(structure: Bolted, fitted: FittedBolt | FittedSolidBolt) -> float:
-    """The smaller area [m2] of a bolt's two seats; NaN for a meshed bolt."""
-    if not isinstance(fitted, FittedBolt):
-        return float("nan")
-    return min(seat_area(structure, fitted, face) for face in fitted.bolt.faces)
+def least_seat_area(fitted: FittedBolt | FittedSolidBolt) -> float:
+    """The smaller area [m2] of a bolt's seats; NaN for a meshed bolt."""
+    return min(seat.area for seat in fitted.pressed) if isinstance(fitted, FittedBolt) else float("nan")
 
 
 def seat_limit(structure: Bolted, face: str) -> tuple[float, str] | None:
@@ -146,8 +136,8 @@ def seat_limit(structure: Bolted, face: str) -> tuple[float, str] | None:
 
 def _seats(structure: Bolted, fitted: FittedBolt | BoltPlace, force: float) -> list[Note]:
     out = []
-    for face in fitted.bolt.faces:
-        pressure, limit = force / seat_area(structure, fitted, face), seat_limit(structure, face)
+    for face, seat in zip(fitted.bolt.faces, fitted.pressed, strict=False):  # a screw presses the first alone
+        pressure, limit = force / seat.area, seat_limit(structure, face)
         if limit is not None and pressure > limit[0]:
             text = (
                 f"bolt {fitted.bolt.name!r}: {show(force, 'N')} press its seat on {face!r} with "

@@ -9,10 +9,11 @@ import numpy as np
 from faying.bolt.bolt import FittedBolt, fatigue_area
 from faying.bolt.fatigue import bending_modulus
 from faying.bolt.solid_bolt import FittedSolidBolt
+from faying.fe.line import Line
 from faying.fe.nodal_forces import thermal_forces
 from faying.joint.bolted import BoltedStructure
 from faying.joint.carried import PressedPatch
-from faying.joint.load_path import BoltLine, LoadPaths, distance_from
+from faying.joint.load_path import BoltLine, LoadPaths
 from faying.joint.shank_forces import shank_forces
 from faying.joint.strength import least_seat_area
 from faying.loads.contact import LoadedContact
@@ -120,7 +121,7 @@ def _crossing(
         torque += float(np.cross(interface.positions - middle, tau).sum(axis=0) @ axis)
         pressed = weights * np.maximum(-traction[:, 0], 0.0)
         press += float(pressed.sum())
-        arms += float(pressed @ distance_from(middle, axis, interface.positions))
+        arms += float(pressed @ Line(point=middle, axis=axis).about(interface.positions)[0])
     return shear, torque, arms / press if press > 0 else 0.0
 
 
@@ -219,7 +220,7 @@ def bolt_answers(
     force, load = preload + np.array(change), np.array(working)
     some = np.abs(load) > NOTHING * preload  # not where F_A is not known
     bolts = structure.fitted_bolts
-    areas = np.array([least_seat_area(structure, one) for one in bolts])
+    areas = np.array([least_seat_area(one) for one in bolts])
     return {
         "bolt_force": force,
         "bolt_force_linear": preload + np.array(linear),

@@ -95,7 +95,7 @@ def read_model_modes(path: str | Path, *, load: float | None = None) -> ModelMod
 
     Args:
         path: result.nc of `faying run`.
-        load: the preload [N]; the greatest where None.
+        load: the preload [N]; the last where None.
 
     Returns:
         The elastic modes at that preload, with the frequency response that the file may hold.

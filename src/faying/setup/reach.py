@@ -28,7 +28,7 @@ from faying.form.face_axes import FaceAxes
 from faying.geometry.mesh_facts import nearest_places
 from faying.geometry.seen_along import RING, circle, hits
 from faying.joint.joint_law import JointLaw
-from faying.joint.load_path import BoltLine, seat_ring
+from faying.joint.load_path import BoltLine
 from faying.materials import Material
 from faying.setup.sketch import Sketch
 from faying.study.keys.joint import JointChoice
@@ -97,10 +97,9 @@ def _weights(
     mesh: NamedFaces, place: BoltPlace | SolidPlace, pairs: Sequence[tuple[str, str]], depth: float
 ) -> tuple[Array, float]:
     """Integral of the pressure of a bolt over each joint, 1 at its hole [m2] (j,), and over its cone."""
-    ring = seat_ring(mesh, place) if isinstance(place, BoltPlace) else None
-    if ring is None:
+    if isinstance(place, SolidPlace) or not place.pressed[0].full:
         return np.zeros(len(pairs)), 0.0
-    hole, seat = ring
+    hole, seat = place.pressed[0].inner, place.pressed[0].outer
     near = min(depth, place.length - depth)
     wide = seat + 2 * near * max(cone_angle(place.length, seat, WIDE * seat), 0.0)
     step = (wide - hole) / 2 / RADII
@@ -270,10 +269,9 @@ def _rim(sketch: Sketch, one: Share, mine: float) -> tuple[float, float] | None:
     mine: its share of the area of a joint that alone takes its force [m2]; of several the cone is as wide as it will.
     """
     place = one.place
-    ring = None if isinstance(place, SolidPlace) else seat_ring(sketch.mesh, place)
-    if ring is None:
+    if isinstance(place, SolidPlace) or not place.pressed[0].full:
         return None
-    hole, seat = ring
+    hole, seat = place.pressed[0].inner, place.pressed[0].outer
     near = min(one.depth, place.length - one.depth)
     outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat) if one.share == 1 else WIDE * seat
     try:

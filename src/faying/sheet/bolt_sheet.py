@@ -18,7 +18,7 @@ from faying.case.engine import engine_of
 from faying.case.scatter import preload_scatter
 from faying.case.solve import solve
 from faying.errors import InputError
-from faying.joint.load_path import LoadPaths, seat_ring
+from faying.joint.load_path import LoadPaths
 from faying.joint.preload_case import preload_index
 from faying.joint.strength import seat_limit
 from faying.misuse import checked_call
@@ -105,7 +105,7 @@ def bolt_sheet(
 
     Args:
         study: The study, or its file.
-        preload: Which of its preloads, force of the first bolt [N] or text such as "8 kN"; the greatest where None.
+        preload: Which of its preloads, force of the first bolt [N] or text such as "8 kN"; the last where None.
         report: Is called with what is being done.
 
     Returns:
@@ -341,15 +341,16 @@ def _seats(case: Case, index: int, numbers: BoltNumbers, force: float, choice: B
     fitted = case.structure.fitted_bolts[index]
     pressure = float(numbers.seat_pressure[0, index])
     area = force / pressure if isfinite(pressure) and pressure > 0 else None
-    ring = seat_ring(case.structure.mesh, fitted) if isinstance(fitted, FittedBolt) else None
+    pressed = fitted.pressed if isinstance(fitted, FittedBolt) else ()
+    head = pressed[0] if pressed and pressed[0].full else None
     thread = fitted.thread if isinstance(fitted, FittedBolt) else None
     seat = "bolt.seat, of a bolt that is not in the mesh"
-    found = [seat_limit(case.structure, face) for face in fitted.bolt.faces]
+    found = [seat_limit(case.structure, face) for face, _ in zip(fitted.bolt.faces, pressed, strict=False)]
     softest = min((one for one in found if one is not None), key=lambda one: one[0], default=(None, "bearing limit"))
     return [
         _quantity("A_p", "area of the smaller seat", "m^2", area, seat),
         _quantity("p_G", f"{softest[1]} of the softer seat", "Pa", float(numbers.seat_limit[index]), "bearing_limit"),
-        _quantity("D_Km", "mean diameter of the seat", "m", None if ring is None else sum(ring) / 2, seat),
+        _quantity("D_Km", "mean diameter of the seat", "m", None if head is None else head.mean_diameter, seat),
         _quantity(
             "m", "length of engagement", "m", None if thread is None else thread.high - thread.low, "a tapped hole"
         ),

@@ -7,7 +7,7 @@ from inspect import signature
 from math import pi, sqrt, tan
 
 from faying.bolt.fatigue import endurance, rolled_after
-from faying.bolt.vdi2230 import reduced_stress, thread_torque
+from faying.bolt.vdi2230 import reduced_stress, thread_torque, tightening_torque
 from faying.sheet.rows import Step
 
 GUIDELINE = "VDI 2230 Part 1:2015"
@@ -226,7 +226,7 @@ STEPS = (
         "R13 M_A [N m]: tightening torque",
         "preload times (0.16 pitch + 0.58 pitch diameter times friction in the thread + half of the mean diameter of "
         "the seat times friction under the head)",
-        lambda F_V, P, d_2, mu_G, D_Km, mu_K: thread_torque(F_V, P, d_2, mu_G) + F_V * D_Km * mu_K / 2,
+        lambda F_V, P, d_2, mu_G, D_Km, mu_K: tightening_torque(F_V, P, d_2, mu_G, D_Km, mu_K),
     ),
 )
 

@@ -174,7 +174,8 @@ def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[SceneBolt, ...]:
     for bolt in study.bolts:
         if isinstance(bolt, Bolt):
             fitted = bolt.fitted(mesh)
-            diameter, head = drawn(bolt.diameter or np.nan, fitted.extent, mesh.size)
+            head_seat = fitted.pressed[0]
+            diameter, head = drawn(bolt.diameter or np.nan, (head_seat.inner, head_seat.outer), mesh.size)
             out.append(SceneBolt(name=bolt.name, seats=fitted.seats, diameter=diameter, head=head))
         else:
             seats = np.stack([face_centre(mesh.points, mesh.face(face))[0] for face in bolt.faces])

@@ -21,6 +21,7 @@ from faying.study.declaration.values import quantity
 from faying.study.keys.face import face_names, two_faces
 from faying.study.keys.material import named_material
 
+FRICTIONS = ("thread_friction", "head_friction")
 # what a meshed bolt has already
 OF_THE_MESH = ("material", "seat", "washer", "head_mass", "nut_mass", "engaged", "shank", "head")
 
@@ -33,7 +34,6 @@ def read_bolt(
     faces = face_names(table, name)
     at, part, diameter, pitch = (table.get(key) for key in ("at", "part", "diameter", "pitch"))
     friction = (table.get("thread_friction"), table.get("head_friction"))
-    forces = _forces(table, diameter, pitch, friction)
     thread, fastener = _thread(table, diameter, pitch, meshed=part is not None)
     bolt: Bolt | SolidBolt | None = None
     if part is not None:
@@ -41,8 +41,14 @@ def read_bolt(
         bolt = SolidBolt(name=name, part=part, faces=faces, at=at, fastener=fastener)
     else:
         material = named_material(table, materials, f"bolt {name!r}")
-        washers = table.every("washer", lambda one: _washer(one, name, materials))
+        washers = tuple(table.every("washer", lambda one: _washer(one, name, materials)))
         given = {key: table.get(key) for key in ("seat", "head_mass", "nut_mass", "engaged", "shank", "head")}
+        idle = [key for key in ("head_mass", "nut_mass", "shank", "head") if key in table.data]
+        if idle and "material" not in table.data:
+            table.faults.add(
+                f"bolt {name!r} has {' and '.join(idle)}, but no diameter and material: it is a force without "
+                "stiffness and mass; give both, or leave that out"
+            )
         if diameter is None and "material" in table.data:
             table.faults.add(
                 f"bolt {name!r} has a material but no diameter; give both, or neither for a bolt without stiffness"
@@ -58,11 +64,12 @@ def read_bolt(
                     washers=washers,
                     fastener=fastener,
                     thread=thread,
-                    friction=None if None in friction else friction,
+                    friction=friction,
                     **given,
                 )
             )
-    return bolt, forces
+    shown = bolt.metric if isinstance(bolt, Bolt) else None
+    return bolt, _forces(table, bolt, thread or (shown if fastener is None else fastener.thread))
 
 
 def _thread(
@@ -119,25 +126,41 @@ def _washer(table: Table, bolt: str, materials: Mapping[str, Material]) -> Washe
     return Washer(outer=outer, inner=inner, thickness=thickness, material=material)
 
 
-def _forces(
-    table: Table, diameter: float | None, pitch: float | None, friction: tuple[float | None, float | None]
-) -> tuple[float, ...]:
+def _forces(table: Table, bolt: Bolt | SolidBolt | None, thread: Thread | None) -> tuple[float, ...]:
     """Forces [N], given as such or as torques with what turns them into forces."""
     forces, torques = table.get("preload"), table.get("torque")
-    thread: dict[str, Any] = {"nut_factor": table.get("nut_factor"), "pitch": pitch}
-    thread |= {"thread_friction": friction[0], "head_friction": friction[1]}
+    factor, pitch, *frictions = (table.get(key) for key in ("nut_factor", "pitch", *FRICTIONS))
+    rubbing = [key for key in FRICTIONS if key in table.data]
     if "preload" not in table.data and "torque" not in table.data:
         table.faults.add(f'{table.where}.preload is missing; give a force such as "12 kN", or torque = "20 N m"')
     if "preload" in table.data and "torque" in table.data:
         table.faults.add(f"{table.where} has both preload and torque; give one of them")
-    if any(key in table.data and value is None for key, value in thread.items()):
+    elif "preload" in table.data and "nut_factor" in table.data:
+        table.faults.add(f"{table.where}.nut_factor turns a torque into a preload, which is given; leave it out")
+    elif "nut_factor" in table.data and rubbing:
+        table.faults.add(
+            f"{table.where} has nut_factor and {' and '.join(rubbing)}, which all turn its torque into a preload; give "
+            "nut_factor, or the frictions"
+        )
+    if any(key in table.data and table.get(key) is None for key in ("nut_factor", "pitch", *FRICTIONS)):
         return ()  # a fault is noted
     if torques is not None:
+        diameter = table.get("diameter") if thread is None else thread.diameter
         if diameter is None:
             table.faults.add(f"{table.where}: a torque gives a preload only with the thread's diameter; add diameter")
             return ()
-        forces = table.made(lambda: tuple(torque_to_preload(t, diameter, **thread) for t in torques))
+        given = dict(zip(FRICTIONS, frictions, strict=True)) | {"nut_factor": factor, "bearing": _bearing(bolt)}
+        pitch = pitch if thread is None else thread.pitch
+        forces = table.made(lambda: tuple(torque_to_preload(t, diameter, pitch=pitch, **given) for t in torques))
     return forces or ()
+
+
+def _bearing(bolt: Bolt | SolidBolt | None) -> float | None:
+    """Mean diameter [m] of the seat or the washer under a head; None where neither is given."""
+    if not isinstance(bolt, Bolt):
+        return None
+    rings = [bolt.seat] if bolt.seat is not None else [(washer.inner, washer.outer) for washer in bolt.washers]
+    return sum(rings[0]) / 2 if rings else None
 
 
 def _tightened(unit: str, example: str, says: str) -> Key:
@@ -170,8 +193,8 @@ BOLT: Declared = {
     "diameter": Key.quantity("m", "Diameter of the shank; with material, the bolt has stiffness and mass."),
     "pitch": Key.quantity(
         "m",
-        "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(P/2pi + 0.577 d2 mu + 0.65 d "
-        "mu) of ISO 16047.",
+        "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(0.16 P + 0.58 d2 mu + D_Km "
+        "mu/2) of VDI 2230; D_Km is the mean diameter of the seat or washer, 1.3 d where neither is given.",
     ),
     "thread_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction in the thread."),
     "head_friction": Key.within(*BOLT_FRICTION, "Coefficient of friction under the head."),
