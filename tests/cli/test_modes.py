@@ -49,6 +49,17 @@ def test_a_study_and_its_matrices_have_the_same_modes(exported, capsys):
     assert len((out / "dofs.txt").read_text().splitlines()) == load_npz(out / "mass.npz").shape[0]
 
 
+def test_matrices_without_directions_have_no_known_mass(exported, capsys):
+    out = exported / "out"
+    files = ["modes", "--stiffness", str(out / "stiffness.npz"), "--mass", str(out / "mass.npz"), "--count", "7"]
+    main_quietly(files)
+    assert "mass: not known" in capsys.readouterr().out
+    main_quietly([*files, "--json"])
+    assert json.loads(capsys.readouterr().out)["mass"]["values"] == [None, None, None]
+    main_quietly(["modes", str(exported / "study.toml"), "--count", "7"])
+    assert "kg along x, " in capsys.readouterr().out
+
+
 def test_matrix_market_with_units(exported, capsys, tmp_path):
     """The same matrices in N/mm and tonnes as text; frequencies in Hz do not change."""
     K, M = (load_npz(exported / "out" / f"{name}.npz") for name in ("stiffness", "mass"))

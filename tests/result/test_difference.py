@@ -1,5 +1,7 @@
 """Two results compared: pairs of modes, numbers of joints, and what does not compare is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -93,6 +95,15 @@ def test_preloads_are_those_that_both_have():
     assert apart.notes == ("the preloads differ: 8 kN in the first run, 12 kN in the second",)
     with pytest.raises(InputError, match=r"preload = 5 kN: the first run has no such preload; it has 2 kN, 8 kN"):
         compare_runs(FIRST, FIRST, 5e3)
+
+
+def test_preloads_of_one_force_that_others_went_before_are_not_the_same():
+    fallen = replace(two_boxes(loads=np.array([12e3, 8e3])), carried=np.array([0.0, 12e3]))
+    found = compare_runs(FIRST, fallen)
+    assert found.loads == (1, 1)
+    assert "the joints have not carried the same: '8 kN' in the first run, '8 kN after 12 kN' in" in found.notes[0]
+    both = replace(two_boxes(loads=np.array([8e3, 8e3])), carried=np.array([0.0, 12e3]))
+    assert compare_runs(FIRST, both).loads == (1, 0)
 
 
 def test_joints_that_only_one_run_has_are_named():

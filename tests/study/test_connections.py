@@ -4,11 +4,13 @@ import re
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import faying
 from faying.bolt.bolt import torque_to_preload
 from faying.study import Study
+from faying.sweeps.variant_builder import StudyVariant
 from tests.helpers.studies import TEXT
 
 
@@ -206,6 +208,33 @@ def test_torque_with_friction(folder):
     given = BOLT | SHANK | {"torque": "20 N m", "pitch": "1.25 mm", "thread_friction": 0.12, "head_friction": 0.14}
     exact = torque_to_preload(20.0, 8e-3, pitch=1.25e-3, thread_friction=0.12, head_friction=0.14)
     assert study(folder, bolt=[given]).loads == pytest.approx((exact,))
+
+
+@pytest.mark.parametrize(
+    ("more", "text"),
+    [
+        ({"counter": "smooth", "method": "psd"}, "surface: method and counter would say how a scan is read"),
+        (
+            {"scan": "scan.x3p", "G": None, "scan_area": None},
+            "G and scan_area would be those of the scan; give D and G",
+        ),
+        ({"scan": "scan.x3p", "G": None, "D": None}, "D and G would be those of the scan"),
+    ],
+)
+def test_numbers_of_a_surface_are_those_of_its_scan_or_given(folder, more, text):
+    (folder / "scan.x3p").write_bytes(MILLED.read_bytes())
+    given = {"D": 2.39, "G": "1.53e-10 m", "scan_area": "16 mm^2"} | more
+    with pytest.raises(faying.InputError, match=text):
+        study(folder, surface={key: value for key, value in given.items() if value is not None})
+
+
+def test_a_number_of_one_owner_counts_above_that_of_all(folder):
+    """In either order of the keys."""
+    plan = study(folder, bolt=[BOLT | SHANK | {"preload": "4 kN"}])
+    point = StudyVariant(study=plan, surfaces=(), forces=np.array([4e3]))
+    keys = {"bolt.b1.preload": 1e3, "bolt.preload": 9e3}
+    for some in (keys, dict(reversed(keys.items()))):
+        assert point.with_values(some).forces.tolist() == [1e3]
 
 
 @pytest.mark.parametrize(

@@ -87,6 +87,14 @@ def test_faults_of_waves(path):
         with_form(path, 'waviness = { Wt = "3 um" }')
     with pytest.raises(faying.InputError, match=r"form: flat = true says that the faces have no form; leave out twist"):
         with_form(path, 'flat = true\ntwist = "1 um"')
+    for text, said in (
+        ("seed = 3", "form.seed belongs to flatness, which is missing"),
+        ('twist = "1 um"\nwave_length = "30 mm"', "form.wave_length belongs to wave, which is missing"),
+        ("along = [1, 0, 0]", "form.along turns a shape, and none is given"),
+    ):
+        with pytest.raises(faying.InputError, match=said):
+            with_form(path, text)
+    assert with_form(path, "flat = false").joints[0].form is None  # as if it were not there: waves are assumed
     with pytest.raises(faying.InputError, match=r'from = "scan" needs a scan whose D and G can be fitted'):
         build(with_form(path, 'waviness = { from = "scan" }'))  # the surface is given as D and G
 

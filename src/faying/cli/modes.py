@@ -56,12 +56,13 @@ def command(
         click.echo(f"shift {given.shift_frequency:.6g} Hz; written to {export}: {', '.join(f.name for f in files)}")
         return
     frequency = units.parse(shift, "Hz", name="--shift") if shift else given.shift_frequency
-    found = modes_of(given, count, frequency).to_dict()
+    modes = modes_of(given, count, frequency)
+    found = modes.to_dict()
     if as_json:
         click.echo(json_text(found))
         return
     click.echo(f"{found['source']}: {found['unknowns']:,} unknowns, {found['solver']}")
-    click.echo(f"mass along x, y, z: {', '.join(f'{m:.6g} kg' for m in found['mass']['values'])}\n")
+    click.echo(f"mass: {modes.summary()[1]['mass']}\n")
     for number, value in enumerate(found["frequencies"]["values"], start=1):
         click.echo(f"{number:4d} {value:14.6f} Hz")
     if found["missed"]:

@@ -64,9 +64,12 @@ def read_matrices(
 
 
 def total_mass(mass: Any, dofs: Index) -> Array:
-    """Total mass along x, y and z (3,), in the unit of the matrix: what a motion of all nodes as one meets."""
+    """Total mass along x, y and z (3,), in the unit of the matrix: what a motion of all nodes as one meets.
+
+    NaN along what no unknown is said to move in.
+    """
     moved = (dofs[:, 1:] == np.array([1, 2, 3])).astype(float)
-    return np.asarray(np.einsum("ij,ij->j", moved, mass @ moved))
+    return np.where(moved.any(axis=0), np.einsum("ij,ij->j", moved, mass @ moved), np.nan)
 
 
 def _check_mass(name: str, M: Any, dofs: Index) -> None:
@@ -87,7 +90,8 @@ def read_pair(
 ) -> Matrices:
     """Read K [N/m], M [kg] and dofs as `read_matrices` does, also .mtx and .npz without a list of dofs.
 
-    Without a list, each unknown counts as direction 1 of a node of its own. Raises what `read_matrices` raises.
+    Without a list, each unknown is a node of its own, and moves in direction 0: in one that is not known. Raises what
+    `read_matrices` raises.
     """
     file = Path(stiffness)
     if kind_of(file) not in ALONE:
@@ -98,7 +102,7 @@ def read_pair(
         raise InputError(f"{file.name} holds the stiffness alone; name the mass too, .mtx or .npz")
     K = _matrix(file) * units.scale(stiffness_unit, "N/m", name="stiffness unit")
     M = _matrix(Path(mass)) * units.scale(mass_unit, "kg", name="mass unit")
-    table = np.column_stack([np.arange(1, K.shape[0] + 1), np.ones(K.shape[0], dtype=np.int64)])
+    table = np.column_stack([np.arange(1, K.shape[0] + 1), np.zeros(K.shape[0], dtype=np.int64)])
     _check(file.name, K, M, table)
     return K.tocsr(), M.tocsr(), table
 

@@ -126,7 +126,8 @@ class MatrixModes(Summary):
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return the unknowns, the mass, and the first frequencies."""
-        rows = {"mass along x, y, z": ", ".join(f"{one:.6g} kg" for one in self.mass)}
+        known = zip("xyz", self.mass, strict=True)
+        rows = {"mass": ", ".join(f"{one:.6g} kg along {axis}" for axis, one in known if one == one) or "not known"}
         rows |= {f"mode {k}": f"{one:.6f} Hz" for k, one in enumerate(self.frequencies[:MAX_ROWS], 1)}
         rows |= {"missing": f"{self.missed} modes below the last; give another shift"} if self.missed else {}
         return f"{len(self.frequencies)} modes of {self.source}: {len(self.shapes):,} unknowns, {self.solver}", rows

@@ -315,8 +315,8 @@ def law_notes(structure: BoltedStructure, preload: PreloadState, load: float) ->
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
         if preload.carried and joint.law.model.memory is None:
             text = (
-                f"{joint.name}, {kilo}: {joint.law.model.name} says nothing of unloading, so that the joint is as on "
-                "first loading; the half-space law of a scan knows what it has carried"
+                f"{joint.name}, {kilo}: {joint.law.model.name} says nothing of unloading, so that its stiffness is as "
+                "on first loading; shear that friction holds stays. The half-space law of a scan knows what it carried"
             )
             out.append(Note(code="no-memory", joint=joint.name, load=load, text=text))
         for reason, share in joint.law.outside_validity(pressure, joint.interface.weights).items():

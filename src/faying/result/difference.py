@@ -206,6 +206,9 @@ def compare_runs(first: Result, second: Result, preload: float | str | None = No
     at = first.loads[loads[0]], second.loads[loads[1]]
     if abs(at[1] - at[0]) > SAME_LOAD * at[0]:
         notes.append(f"the preloads differ: {load_text(at[0])} in the first run, {load_text(at[1])} in the second")
+    elif first.load_names[loads[0]] != second.load_names[loads[1]]:
+        here, there = first.load_names[loads[0]], second.load_names[loads[1]]
+        notes.append(f"the joints have not carried the same: {here!r} in the first run, {there!r} in the second")
     modes, alike, why = _paired(first, second, loads)
     if why:
         notes.append(why)
@@ -223,7 +226,8 @@ def compare_runs(first: Result, second: Result, preload: float | str | None = No
 def shared_preloads(first: Result, second: Result) -> list[tuple[int, int]]:
     """Where the preloads stand that both results have, from the least: index in the first and in the second."""
     same = np.argwhere(np.isclose(first.loads[:, None], second.loads[None], rtol=SAME_LOAD, atol=0))
-    return [(int(i), int(j)) for i, j in same]
+    pairs = [(int(i), int(j)) for i, j in same]
+    return [(i, j) for i, j in pairs if first.load_names[i] == second.load_names[j]] or pairs
 
 
 def _areas(result: Result) -> Array:

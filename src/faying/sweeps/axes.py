@@ -144,9 +144,7 @@ class Grid:
         place = np.unravel_index(index, self.shape)
         forces = np.array(self.study.preloads[-1].forces)
         point = StudyVariant(study=self.study, surfaces=self.surfaces, forces=forces)
-        for axis, i in zip(self.axes, place, strict=True):
-            point = point.with_value(axis.key, axis.values[i])
-        return point
+        return point.with_values({axis.key: axis.values[i] for axis, i in zip(self.axes, place, strict=True)})
 
     def corners(self, most: int) -> list[int]:
         """Indices of the grid's corners, at most so many, and every text value once.

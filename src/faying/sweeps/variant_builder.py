@@ -65,6 +65,13 @@ class StudyVariant:
     forces: Array
     scales: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
+    def with_values(self, values: Mapping[str, Any]) -> "StudyVariant":
+        """The same with values by key, in SI units, put in; a key that names one owner counts above one for all."""
+        out = self
+        for key in sorted(values, key=lambda key: key != MODEL and number_of(key).owner is not None):
+            out = out.with_value(key, values[key])
+        return out
+
     def with_value(self, key: str, value: Any) -> "StudyVariant":
         """The same with one more value, in SI units, put in: for all owners of the number, or the one that is named."""
         study = self.study

@@ -84,9 +84,7 @@ class Inputs:
         named = dict(zip(self.names, values.tolist(), strict=True))
         if self.scatter is not None:
             point = _with_surface(point, self.scatter, named)
-        for key, value in named.items():
-            point = point.with_value(key, self.model(value) if key == MODEL else value)
-        return point
+        return point.with_values({key: self.model(value) if key == MODEL else value for key, value in named.items()})
 
 
 def scattering(study: Study) -> UncertainChoice:

@@ -14,6 +14,13 @@ def read_form(table: Table) -> Form | None:
     others = [key for key in table.data if key != "flat"]
     if table.get("flat") and others:
         table.faults.add(f"{table.where}: flat = true says that the faces have no form; leave out {', '.join(others)}")
+    for key, shape in (("seed", "flatness"), ("wave_length", "wave")):
+        if key in table.data and shape not in table.data:
+            table.faults.add(f"{table.where}.{key} belongs to {shape}, which is missing; give that, or leave {key} out")
+    if not {*others} - {"seed", "wave_length", "along"} and not table.get("flat"):
+        if "along" in others:
+            table.faults.add(f"{table.where}.along turns a shape, and none is given; give one, or leave along out")
+        return None
     given = {name: table.get(name) for name in PARAMETERS}
     along = table.get("along")
     maps: dict[str, Any] = {

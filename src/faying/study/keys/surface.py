@@ -44,10 +44,20 @@ class SurfaceChoice:
     def of(cls, table: Table) -> "SurfaceChoice":
         """Read one [surface] table."""
         choice = cls(**{key: table.get(key) for key in SURFACE if key != "counter"}, counter=_counter(table))
-        if "scan" not in table.data:
-            missing = [k for k in ("D", "G", "scan_area") if k not in table.data]
-            if missing:
-                table.faults.add(f"{table.where}: give scan, or D, G and scan_area ({', '.join(missing)} missing)")
+        missing = [k for k in ("D", "G", "scan_area") if k not in table.data]
+        of_scan = [k for k in SURFACE if k in table.data and k not in ("D", "G", "scan_area")]
+        if "scan" not in table.data and missing:
+            table.faults.add(f"{table.where}: give scan, or D, G and scan_area ({', '.join(missing)} missing)")
+        elif "scan" not in table.data and of_scan:
+            table.faults.add(
+                f"{table.where}: {' and '.join(of_scan)} would say how a scan is read, and D, G and scan_area stand "
+                "in place of one; leave it out"
+            )
+        elif "scan" in table.data and len(missing) < 3 and not {"D", "G"} <= table.data.keys():
+            table.faults.add(
+                f"{table.where}: D, G and scan_area belong together, and {' and '.join(missing)} would be those of the "
+                "scan; give D and G, or neither of the three"
+            )
         if choice.D is not None and not 2 < choice.D < 3:
             table.faults.add(
                 f"{table.where}.D = {choice.D}: the dimension of a surface is between 2 and 3, for example 2.4"
