@@ -28,9 +28,9 @@ DECLARED: dict[Severity, str] = {
     """,
     "remark": """
         alternative assembly-left-out assembly-order assumed backbone-no-slip backbone-no-witness backbone-rest
-        backbone-survivors backbone-witness beyond bolt bolt-numbers bolt-pitch bolt-seat bolt-thread bonded dowel-mesh
+        backbone-witness beyond bolt bolt-numbers bolt-pitch bolt-seat bolt-thread bonded dowel-mesh
         end-of-prior evidence faces-without-triangles file file-end law-choice load-cases load-slides mates mesh-refined
-        mesh-unknown modes-couple modes-cross more-parameters-than-data nameless-parts no-backbone no-loss no-memory
+        mesh-unknown modes-couple modes-cross more-parameters-than-data nameless-parts no-loss no-memory
         no-waves not-told numbered-parts one-body part-test response-residual shared-names snapped straightened surface
         toml uncertain undivided vibration-alone vibration-jumps waves waves-mesh
     """,

@@ -130,6 +130,17 @@ def test_coarse_faces_with_springs_at_nodes_are_told_how_much_stiffer_they_turn(
     assert not said(8) + said(2, coupling="faces")
 
 
+def test_bent_faces_have_no_contact_table_and_flat_ones_do(tmp_path):
+    def of(form):
+        found = attached(tmp_path, text=TEXT.replace('"p1.left"]\n', f'"p1.left"]\n[joint.form]\n{form}\n', 1))
+        return found.deck.contact is not None, [note for note in found.notes if "no contact table" in note]
+
+    assert of("flat = true") == (True, [])
+    written, notes = of('twist = "1 um"')
+    assert not written
+    assert len(notes) == 1
+
+
 def test_pressure_from_our_preload(tmp_path):
     found = attached(tmp_path, "solve", preload="3 kN")
     assert found.pairs.area @ found.pairs.pressure == pytest.approx(3000, rel=1e-8)

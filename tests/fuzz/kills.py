@@ -19,7 +19,6 @@ SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP)
 COMMANDS = {
     "run": ["run", "uncertain.toml"],
     "predict": ["predict", "uncertain.toml", "--samples", "64", "--jobs", "2"],
-    "backbones": ["predict", "uncertain.toml", "--samples", "16", "--backbones", "8", "--jobs", "2", "--out", "b.nc"],
     "sweep": ["sweep", "uncertain.toml", "--set", "surface.D=2.2:2.6:6", "--set", "law.model=jk,gw", "--jobs", "2"],
     "identify": ["identify", "uncertain.toml", "--jobs", "2"],
     "backbone": ["backbone", "uncertain.toml"],

@@ -15,7 +15,6 @@ from faying.form.fit import figure as form
 from faying.form.fit import fit_form
 from faying.halfspace import figure as half_space
 from faying.identify import prediction as predicting
-from faying.identify.backbones import Backbones
 from faying.identify.identification import figure as identification
 from faying.identify.identify import identify_model
 from faying.identify.noise import Losses
@@ -249,7 +248,7 @@ def swept(*texts):
 
 @cache
 def prediction():
-    """Frequencies that depend on four numbers, at two loads, with a test and backbones."""
+    """Frequencies that depend on four numbers, at two loads, with a test."""
     rng = np.random.default_rng(0)
     units = {"bolt.preload": "N", "material.45 steel.E": "Pa", "joint.flange.tangential": "", "surface.fitted_D": ""}
     centres = np.array([8e3, 2.1e11, 0.5, 2.4])
@@ -257,9 +256,6 @@ def prediction():
     x = rng.standard_normal((128, 4))
     f = np.array([100.0, 250.0, 600.0]) * np.exp(0.02 * x @ rng.uniform(0.2, 1, (4, MODES)))
     f = np.stack([f, 1.05 * f], axis=1)
-    a = np.geomspace(0.1, 10, 20)
-    damping = 1e-3 * np.exp(0.2 * x[:8, :1]) * (1 + a)
-    measured = measured_points()
     return Prediction(
         title="two boxes",
         inputs=Inputs(columns=tuple(Input(key=k, distribution=spread[k], unit=units[k]) for k in units)),
@@ -277,18 +273,6 @@ def prediction():
         discrepancy_of_test_mode=np.zeros((2, 2)),
         test=np.array([[101.0, 249.0], [108.0, 300.0]]),
         test_source="test",
-        backbones=Backbones(
-            mode=1,
-            preload=8e3,
-            at=np.array([0.1, 0.0, 0.02]),
-            acceleration=a,
-            frequencies=200 + 2 * x[:8, :1] - 2 * np.log1p(a),
-            damping=damping,
-            measured_acceleration=measured.acceleration,
-            measured_frequency=measured.frequency,
-            measured_damping=measured.damping,
-            measured_source=measured.source,
-        ),
     )
 
 
@@ -441,7 +425,6 @@ FIGURES = {
     "identify/prediction.py:intervals": lambda: predicting.intervals(prediction()),
     "identify/prediction.py:plot": lambda: whole(prediction().plot()),
     "identify/prediction.py:tornado": lambda: predicting.tornado(prediction()),
-    "identify/prediction.py:backbones": lambda: predicting.backbones(prediction()),
     "identify/identification.py:figure": lambda: identification(found()),
     "identify/identification.py:plot": lambda: whole(found().plot()),
 }

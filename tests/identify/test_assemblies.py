@@ -172,8 +172,6 @@ def test_words(all_drawn, tmp_path):
     study, _ = all_drawn
     with pytest.raises(InputError, match="whole number from 2"):
         faying.predict(study, assemblies=1)
-    with pytest.raises(InputError, match="have no backbones"):
-        faying.predict(study, assemblies=4, backbones=8)
     with pytest.raises(InputError, match="joints that bolts press"):
         faying.predict(replace(study, joints=(), bolts=()), assemblies=4)
     with pytest.raises(InputError, match="leave out --samples"):

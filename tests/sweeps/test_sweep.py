@@ -232,6 +232,9 @@ def test_faults_of_a_grid(plan):
             Grid(study=plan, surfaces=surfaces, axes=axes(text))
     with pytest.raises(faying.InputError, match="each axis once"):
         Grid(study=plan, surfaces=surfaces, axes=axes("surface.D=2.2:2.6:3", "surface.D=2.2:2.6:3"))
+    (bolt,) = plan.bolts
+    with pytest.raises(faying.InputError, match="--set bolt.preload: each bolt has an axis of its own"):
+        Grid(study=plan, surfaces=surfaces, axes=axes("bolt.preload=1 kN,2 kN", f"bolt.{bolt.name}.preload=3 kN,4 kN"))
 
 
 def test_a_number_has_one_range_in_a_study_and_in_a_sweep(plan):

@@ -19,7 +19,6 @@ from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.springs import Springs
 from faying.joint.support_check import check_motions, checked_preload
-from faying.measured.mac import mac
 from faying.microslip.epmc import EpmcCurve, EpmcPoint
 from faying.microslip.levels import cut_laws
 from faying.microslip.microslip import Microslip
@@ -268,7 +267,7 @@ def backbones(
 
 
 def backbones_of(case: Case, choice: BackboneChoice) -> tuple[Backbone, ...]:
-    """Curves for every law and friction of a choice, at the greatest preload of a case that is ready to be solved.
+    """Curves for every law and friction of a choice, at the last preload of a case that is ready to be solved.
 
     Raises: see `backbone`.
     """
@@ -276,49 +275,6 @@ def backbones_of(case: Case, choice: BackboneChoice) -> tuple[Backbone, ...]:
     progress = _Progress(None, max(len(choice.laws), 1) * len(frictions))
     with CurveStore(None, "") as store:
         return tuple(_curves(case, choice, [len(case.study.loads) - 1], frictions, store, progress))
-
-
-def median_of(case: Case, choice: BackboneChoice) -> tuple[Array, Point]:
-    """Shape (unknowns,) at rest of the mode of a choice, at the last load of a case, and the point [m] observed.
-
-    Raises: see `backbone`.
-    """
-    one = _last(case, choice)
-    node, *_ = one.observed()
-    x, y, z = case.structure.mesh.points[node].tolist()
-    return one.basis.shape, (x, y, z)
-
-
-def curve_like(
-    case: Case, choice: BackboneChoice, friction: tuple[float, ...], shape: Array, *, least: float
-) -> Backbone:
-    """Follow the mode that has a shape, at the last load of a case; without error bounds, static cycle and notes.
-
-    Args:
-        case: Ready to be solved; its mesh is that of the shape.
-        choice: What is asked for, but for mode and friction.
-        friction: Coefficient of each joint [-].
-        shape: Of the mode at rest that is looked for (unknowns,).
-        least: MAC with that shape which the mode must have.
-
-    Raises:
-        InputError: No mode has this shape; else as `backbone`.
-        NotConverged: As `backbone`.
-    """
-    one = _last(case, choice)
-    basis = one.basis
-    alike = mac(shape, basis.modes.shapes[:, case.rigid_count :].T, basis.mass)[0]
-    nearest = int(np.argmax(alike))
-    if alike[nearest] < least:
-        raise InputError(
-            f"no mode has the shape of mode {choice.mode} of the median: the nearest has a MAC of {alike[nearest]:.2f}"
-        )
-    basis.mode = nearest + 1
-    one = replace(one, choice=replace(choice, mode=nearest + 1))
-    progress = _Progress(None, 1)
-    basis.begin()
-    one.train(friction, progress)
-    return collected(one.curve(friction, (), lambda count, point: None, progress), bounded=False)
 
 
 @dataclass
@@ -423,12 +379,6 @@ def _modes(case: Case, springs: Sequence[Springs[Interface]], mode: int) -> Mode
     modes, *_ = modes_of(case.modal, springs, case.rigid_count + wanted)
     check_motions(case.structure, modes)
     return modes
-
-
-def _last(case: Case, choice: BackboneChoice) -> "_Prepared":
-    last = len(case.study.loads) - 1
-    (basis,) = _bases([(case, last)], choice, _Progress(None, 1))
-    return _Prepared(case=case, choice=choice, load=case.study.loads[last], basis=basis)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -47,16 +47,13 @@ class BackboneCurve:
     rest_damping: float
 
 
-def collected(curve: BackboneCurve, *, bounded: bool = True) -> Backbone:
-    """Return the curve as it is kept; where not `bounded`, without error bounds, static cycle and notes."""
+def collected(curve: BackboneCurve) -> Backbone:
+    """Return the curve as it is kept."""
     study, structure, line = curve.case.study, curve.case.structure, curve.line
     low = curve.choice.amplitude[0]
     first = next((k for k, p in enumerate(line.points) if p.level >= low * (1 - 1e-3)), len(line.points) - 1)
     points, residuals = line.points[first:], curve.residuals[first:]
-    bounds, witness, notes = ErrorBounds(), None, []
-    if bounded:
-        bounds, witness = error_bounds(curve, points), _quasi_static_check(curve, points)
-        notes = _notes(curve, bounds, witness)
+    bounds, witness = error_bounds(curve, points), _quasi_static_check(curve, points)
     interfaces = [joint.interface for joint in structure.joints]
     row = curve.epmc.observer
     assert row is not None
@@ -87,14 +84,14 @@ def collected(curve: BackboneCurve, *, bounded: bool = True) -> Backbone:
         laws=tuple(joint.law.model.name for joint in structure.joints),
         witness=witness,
         bounds=replace(bounds, residual=float(max(residuals))),
-        notes=tuple(notes),
+        notes=tuple(_notes(curve, bounds, witness)),
         provenance=provenance(study),
         **_along(curve, points),
-        **measured_points(curve.choice.measured),
+        **_measured_points(curve.choice.measured),
     )
 
 
-def measured_points(path: Path | None) -> dict[str, Any]:
+def _measured_points(path: Path | None) -> dict[str, Any]:
     """The measured points of a file, as curves hold them; none without a file."""
     if path is None:
         return {}

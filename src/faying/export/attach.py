@@ -19,6 +19,7 @@ from faying.export.condense import under_preload
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.fe.sides import face_centre
+from faying.form.form import Form
 from faying.joint.joint_law import JointLaw
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.joint.preload_case import preload_index
@@ -229,7 +230,8 @@ def attach(
                 f"the mesh of the faces is coarse: springs node by node resist a turn of the joint by "
                 f"{percent(at_nodes / max(exact, 1e-300) - 1)} more than the joint does; --coupling faces is exact"
             )
-    if spec.form is not None:
+    bent = spec.form not in (None, Form())
+    if bent:
         notes.append("between bent faces a pressure has no one closure: the deck has no contact table, only springs")
     viscous = None if at_frequency is None else np.asarray(pairs.loss / (2 * np.pi * at_frequency))
     area = pairs.area if pairs.lumped else interface.weights
@@ -248,7 +250,7 @@ def attach(
         viscous=viscous,
         frequency=at_frequency,
         first_element=(last_element(file) // 100_000 + 1) * 100_000 + 1,  # a round number above all of the file
-        contact=_contact(law, spec, float(used.max()), mean),
+        contact=None if bent else _contact(law, spec, float(used.max()), mean),
     )
     return Attachment(deck=deck, interface=interface, materials=materials, notes=tuple(dict.fromkeys([*notes, *flags])))
 
@@ -393,7 +395,7 @@ def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:
 
 def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> ContactProperty | None:
     """Sample the law from a ten-thousandth of the end of the table, three times the greatest pressure."""
-    if mean <= law.least_pressure or spec.form is not None:
+    if mean <= law.least_pressure:
         return None
     end = min(law.model.greatest_pressure, 3 * greatest)
     pressure = np.geomspace(max(1e-4 * end, law.least_pressure), end, 199)

@@ -19,7 +19,6 @@ from faying.identify.prediction import Prediction
 from faying.identify.reassembly import reassembled
 from faying.identify.sampling.ensemble import Ensemble, by_reason
 from faying.identify.sampling.evaluate import LIMIT, Reduced
-from faying.identify.sampling.follow import Follower, choice_of, sliding
 from faying.identify.sampling.store import SampleStore
 from faying.misuse import checked_call
 from faying.notes import Note, joint_names
@@ -45,7 +44,6 @@ def predict(
     jobs: int = ...,
     out: str | Path | None = ...,
     report: Report | None = ...,
-    backbones: int = ...,
     assemblies: None = ...,
 ) -> Prediction: ...
 
@@ -71,7 +69,6 @@ def predict(
     jobs: int = 1,
     out: str | Path | None = None,
     report: Report | None = None,
-    backbones: int = 0,
     assemblies: int | None = None,
 ) -> Prediction | Assemblies:
     """Evaluate a study under the scatter of its numbers: as its [uncertain] says, and as is assumed of the rest.
@@ -85,8 +82,6 @@ def predict(
         jobs: processes on this machine.
         out: file to write, ending in .nc; finished work is saved next to it, and the same call resumes there.
         report: called with a stage, the samples done, and their number; 0 of 0 while the bases grow.
-        backbones: samples, the first of all, in which the mode of [backbone] is followed, each in full: 8 to `samples`;
-            0 for none.
         assemblies: how often one structure is taken apart and bolted together again, 2 or more, each solved in full,
             in place of samples of structures: the force of each bolt, their order and the position of the parts within
             their holes are drawn, and nothing else.
@@ -97,7 +92,6 @@ def predict(
 
     Raises:
         InputError: nothing in the study scatters, it does not fit, or no sample has an answer.
-        NotConverged: the mode of the backbones is not found at the median.
 
     Source:
         Sobol's sequence: Joe and Kuo 2008, doi:10.1137/070709359, as SciPy has it.
@@ -105,8 +99,6 @@ def predict(
     study = Study.read_bolted(study, first_loading=True)
     check_seed(seed)
     if assemblies is not None:
-        if backbones:
-            raise InputError("assemblies have no backbones; ask for one of them")
         return reassembled(study, assemblies, seed, jobs=jobs, out=None if out is None else Path(out), report=report)
     check(study, samples)
     (report or silent)("mesh", 0, 0)
@@ -116,19 +108,13 @@ def predict(
     if study.part_tests:  # they say what E and density are; what is listed is their prior
         uncertain = replace(uncertain, inputs=tuple(one for one in uncertain.inputs if not of_parts(one.key)))
     given, study = study, replace(study, uncertain=uncertain)
-    choice = choice_of(study, samples, backbones) if backbones else None
     ensemble = Ensemble.of(study, samples, seed, surfaces)
-    if choice is not None:
-        sliding(ensemble, choice, 0)  # raises, before the mesh
     file = None if out is None else Path(out)
     with SampleStore(file, fingerprint(study, samples, seed, LIMIT), what="prediction") as store:
         reduced = Reduced(ensemble, structure=structure, jobs=jobs, report=report, store=store)
-        follower = None if choice is None else Follower.of(ensemble, choice, reduced)
         rows = reduced.rows(ensemble)
         parts = KnownParts.of(given, structure, reduced.modes(ensemble)) if study.part_tests else None
         found = predicted(study, ensemble, reduced, rows, seed, parts)
-        if follower is not None:
-            found = found.with_backbones(follower.follow(backbones, reduced))
         if file is not None:
             found.save(file)
         store.finish()

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from faying.errors import InputError
-from faying.identify.backbones import Backbones
 from faying.identify.sampling.ensemble import Inputs
 from faying.identify.sampling.surrogate import Surrogate
 from faying.identify.shares import Shares, shares
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
-from faying.result.backbone import ROUNDING, factor_of, framed, marks
 from faying.result.fields import Recorded, load_texts, optional, variable
 from faying.result.fields import listed as numbers
 from faying.result.provenance import Provenance
@@ -23,7 +21,6 @@ from faying.result.run_record import preload_slope
 from faying.study.keys.uncertain import is_draw
 from faying.style import (
     COLOURS,
-    COLUMN,
     WIDE,
     axes_of,
     colour,
@@ -31,12 +28,11 @@ from faying.style import (
     headline,
     load_colours,
     new_figure,
-    shared_legend,
 )
 from faying.text import listed, notes_row
 from faying.typeset import name_of
 from faying.typing import Array, Mask
-from faying.units import in_mm, load_text
+from faying.units import load_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,9 +55,6 @@ class Quantiles:
         loss_factors: (q, load, mode) [-]; NaN where no law predicts loss.
         slopes: Change with preload (q, mode) [Hz/N], by a line through all loads; NaN for a single load.
         paired: Frequencies of the test's modes (q, load, test mode) [Hz]; None where the study has no test.
-        backbone_frequencies: Of the backbones (q, amplitude) [Hz], NaN where fewer than half of them go on; None
-            without backbones.
-        backbone_damping: Their damping ratios to critical (q, amplitude) [-], likewise.
     """
 
     levels: tuple[float, ...]
@@ -69,8 +62,6 @@ class Quantiles:
     loss_factors: Array
     slopes: Array
     paired: Array | None
-    backbone_frequencies: Array | None = None
-    backbone_damping: Array | None = None
 
 
 @checked_call
@@ -85,7 +76,6 @@ class Prediction(Recorded):
         tolerance: Relative error of a frequency that the bases were made for.
         basis: Sizes of the bases for equilibrium and vibration.
         reasons: Why samples have no answer, and how many.
-        backbones: Of the first samples; None where they were not asked for.
         notes: What there is to say.
         test, test_source: The test, where the study has one.
     """
@@ -120,7 +110,6 @@ class Prediction(Recorded):
     test: Array | None = optional("load test_mode", "Hz", "measured frequencies", "test/frequency", gaps=True)
     test_source: str = ""
     reasons: dict[str, int] = field(default_factory=dict)
-    backbones: Backbones | None = None
     notes: tuple[Note, ...] = ()
     provenance: Provenance | None = None
 
@@ -160,7 +149,7 @@ class Prediction(Recorded):
 
     @checked_call
     def quantiles(self, levels: Sequence[float] = LEVELS) -> Quantiles:
-        """Quantiles of frequencies, loss factors, slopes and backbones.
+        """Quantiles of frequencies, loss factors and slopes.
 
         Args:
             levels: Shares from 0 to 1 of the samples that lie below.
@@ -170,11 +159,7 @@ class Prediction(Recorded):
         """
         if not len(levels) or not all(0 <= level <= 1 for level in levels):
             raise InputError(f"levels {tuple(levels)} should be shares from 0 to 1, for example (0.05, 0.5, 0.95)")
-        found = self._quantiles(tuple(map(float, levels)), self.sound)
-        if self.backbones is None:
-            return found
-        frequencies, damping = self.backbones.quantiles(levels)
-        return replace(found, backbone_frequencies=frequencies, backbone_damping=damping)
+        return self._quantiles(tuple(map(float, levels)), self.sound)
 
     def _quantiles(self, levels: tuple[float, ...], which: Any) -> Quantiles:
         if not np.any(which):
@@ -336,8 +321,6 @@ class Prediction(Recorded):
                 "predicted": {"unit": "Hz", "values": numbers(found.paired)},
                 "covered": {"between 5 and 95 %": inside, "of": count},
             }
-        if self.backbones is not None:
-            out["backbones"] = self.backbones.to_dict(LEVELS)
         try:
             shares, error = self.shares()
         except InputError as fault:
@@ -350,10 +333,6 @@ class Prediction(Recorded):
         modes = np.arange(1, self.frequencies.shape[2] + 1)
         out: dict[str, Any] = {"load": load_texts(self.loads), "mode": modes, "input": self.names}
         return out | ({} if self.test is None else {"test_mode": np.arange(1, self.test.shape[1] + 1)})
-
-    def with_backbones(self, backbones: Backbones) -> Self:
-        """The same with the backbones of its first samples, and what there is to say of them."""
-        return replace(self, backbones=backbones, notes=(*self.notes, *backbones.notes))
 
     def with_notes(self, notes: Sequence[Note]) -> Self:
         """The same with more to say."""
@@ -461,37 +440,4 @@ def tornado(found: Prediction) -> Any:
     ax.set_xlabel(f"share of the variance at {load_text(found.loads[-1])} [%]")
     fig.legend(loc="outside lower center", ncols=2)
     ax.set_title(headline(found.title))
-    return fig
-
-
-@drawing
-def backbones(found: Prediction) -> Any:
-    """Return the figure of the backbones: 5 to 95 % and the median of frequency and damping, measured points over them.
-
-    Thin lines are the samples, some of which may go farther than the quantiles. Raises InputError without backbones.
-    """
-    curves = found.backbones
-    if curves is None:
-        raise InputError("this prediction has no backbones; ask for them with --backbones 32")
-    fig = new_figure(COLUMN, 4.8)
-    upper, lower = fig.subplots(2, 1, sharex=True)
-    a = curves.acceleration
-    bands = curves.quantiles(LEVELS)
-    for ax, quantity, values, band in (
-        (upper, "frequency", curves.frequencies, bands[0]),
-        (lower, "damping", curves.damping, bands[1]),
-    ):
-        factor = factor_of(quantity)
-        least = ROUNDING * np.nanmax(values, initial=0.0)  # below it nothing slips yet
-        low, middle, high = factor * np.where(band > least, band, np.nan)
-        for k, line in enumerate(factor * np.where(values > least, values, np.nan)):
-            ax.plot(a, line, color="0.6", lw=0.5, alpha=0.6, label="samples" if k == 0 else None)
-        ax.fill_between(a, low, high, color=COLOURS[0], alpha=0.25, lw=0, label="5 to 95 %")
-        ax.plot(a, middle, color=COLOURS[0], lw=1.8, label="median")
-        if curves.measured is not None:
-            marks(ax, curves.measured, quantity, 0)
-        framed(ax, quantity)
-    lower.set_xlabel(f"acceleration at {in_mm(curves.at)} [m/s²]")
-    upper.set_title(f"{headline(found.title)}: mode {curves.mode}, {load_text(curves.preload)}")
-    shared_legend(fig, [upper], 2)
     return fig

@@ -9,10 +9,9 @@ from faying.identify.prediction import LEVELS, Prediction
 from faying.output.table import Rows, by_mode
 from faying.output.table import text as aligned
 from faying.output.terminal import WIDTH
-from faying.units import in_mm, load_text
+from faying.units import load_text
 
 SHOWN = 0.03  # share of the variance from which an input is named
-MAX_ACCELERATIONS = 12  # accelerations in the table of backbones, but for the last
 
 
 def scatter(found: Prediction) -> Rows:
@@ -44,30 +43,6 @@ def losses(found: Prediction) -> Rows:
         return []
     heads = (f"{load_text(load)} (loss)" for load in found.loads)
     return by_mode(heads, ([" .. ".join(f"{value:.1e}" for value in load) for load in mode] for mode in q.T))
-
-
-def backbones(found: Prediction) -> Rows:
-    """One row per acceleration, some of all: frequency and damping of the backbones, and how many go so far."""
-    curves = found.backbones
-    if curves is None:
-        return []
-    rows: Rows = [["a [m/s2]", "f [Hz]", "damping [%]", "curves"]]
-    frequencies, damping = curves.quantiles(LEVELS)
-    last = len(curves.acceleration) - 1
-    for k in sorted({*range(0, last, -(-last // MAX_ACCELERATIONS)), last}):
-        cells = ["-", "-"]
-        if curves.enough[k]:
-            cells = [_three(frequencies[:, k]), " .. ".join(f"{100 * z:.3g}" for z in damping[:, k])]
-        rows.append([f"{curves.acceleration[k]:.4g}", *cells, f"{curves.reached[k]} of {curves.answered}"])
-    return rows
-
-
-def observed_at(found: Prediction) -> str:
-    """Which mode the backbones are of, under which preload, and where they are observed; empty without any."""
-    curves = found.backbones
-    if curves is None:
-        return ""
-    return f"mode {curves.mode} at {load_text(curves.preload)}, acceleration at {in_mm(curves.at)}"
 
 
 def beside_test(found: Prediction) -> Rows:
@@ -125,7 +100,6 @@ def text(found: Prediction) -> str:
     for head, lines in (
         ("loss factors, 5 % .. median .. 95 %", losses(found)),
         ("change with preload, 5 % .. median .. 95 %", slopes(found)),
-        (f"backbones, 5 % .. median .. 95 %: {observed_at(found)}", backbones(found)),
         (f"compared with the test ({found.test_source}): {inside} of {count} inside", beside_test(found)),
     ):
         if lines:

@@ -33,7 +33,6 @@ def predicted(found: Prediction) -> str:
         (f"Frequencies, {levels}", prediction.intervals(found), MEANS),
         (f"Loss factors, {levels}", prediction.losses(found), ""),
         (f"Change with preload, {levels}", prediction.slopes(found), ""),
-        (f"Backbones, {levels}", prediction.backbones(found), f"{prediction.observed_at(found)}."),
         (
             "Beside the test",
             prediction.beside_test(found),
@@ -50,10 +49,7 @@ def predicted(found: Prediction) -> str:
         if lines:
             body += [f"<h2>{escape(title)}</h2>", page.table(lines), f"<p>{escape(below)}</p>" if below else ""]
     body.append("<h2>Figures</h2>")
-    figures = [("intervals", drawing.intervals), ("shares", drawing.tornado)]
-    if found.backbones is not None:
-        figures.append(("backbones", drawing.backbones))
-    for name, draw in figures:
+    for name, draw in (("intervals", drawing.intervals), ("shares", drawing.tornado)):
         try:
             body.append(f"<figure>{page.picture(name, draw(found))}</figure>")
         except InputError as fault:  # too few samples for shares of the variance

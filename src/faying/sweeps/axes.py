@@ -11,7 +11,7 @@ from faying.contact.parameter import Parameter
 from faying.errors import InputError
 from faying.misuse import checked_call
 from faying.study.keys.surface import Surface
-from faying.study.keys.varied import MODEL, varied
+from faying.study.keys.varied import MODEL, owners, varied
 from faying.study.keys.varied import words as words_of_keys
 from faying.study.study import Study
 from faying.sweeps.variant_builder import StudyVariant, check_key
@@ -114,10 +114,21 @@ class Grid:
             raise InputError(f"the axes have {self.size:,} combinations; a sweep takes up to {MAX_POINTS:,}")
         for key in keys:
             check_key(self.study, key, models=MODEL in keys, where=f"--set {key}")
+        self._check_heard()
         if self.study.in_order:
             raise InputError("a sweep pulls all bolts at once; leave out [tightening], or run studies one by one")
         self.point(0)
         self.point(self.size - 1)
+
+    def _check_heard(self) -> None:
+        """Raise InputError for an axis of all owners of a number each of which has an axis of its own."""
+        numbers = [number for number in map(varied, self.keys) if number is not None]
+        study = self.study
+        known = owners((one.name for one in study.joints), (one.name for one in study.bolts), study.parts)
+        for one in numbers:
+            own = {other.owner for other in numbers if (other.room, other.name) == (one.room, one.name)}
+            if one.owner is None and len(own) > 1 and own.issuperset(known[one.room]):
+                raise InputError(f"--set {one.key}: each {one.room} has an axis of its own, so that it changes nothing")
 
     @property
     def shape(self) -> tuple[int, ...]:

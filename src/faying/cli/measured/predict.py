@@ -13,7 +13,7 @@ from faying.files import new_folder, write_text
 
 if TYPE_CHECKING:
     from faying.study import Study
-NOT_OF_ASSEMBLIES = ("samples", "plot", "tornado", "backbones", "bands", "html")  # what no assembly has
+NOT_OF_ASSEMBLIES = ("samples", "plot", "tornado", "html")  # what no assembly has
 DEFAULT = click.core.ParameterSource.DEFAULT
 
 
@@ -27,13 +27,6 @@ DEFAULT = click.core.ParameterSource.DEFAULT
 @click.option("--out", type=PATH, help="NetCDF file (default: prediction.nc in the folder that run writes to).")
 @click.option("--plot", type=FILE, help="Draw the intervals (svg, png, pdf).")
 @click.option("--tornado", type=FILE, help="Draw the shares of the variance.")
-@click.option(
-    "--backbones",
-    type=click.IntRange(8, 1_000_000),
-    metavar="N",
-    help="Follow the mode of [backbone] to large amplitudes in the first N samples.",
-)
-@click.option("--bands", type=FILE, help="Draw the bands of the backbones.")
 @click.option(
     "--assemblies",
     type=click.IntRange(2, 100_000),
@@ -51,8 +44,6 @@ def command(
     out: Path | None,
     plot: Path | None,
     tornado: Path | None,
-    backbones: int | None,
-    bands: Path | None,
     assemblies: int | None,
     html: Path | None,
     as_json: bool,
@@ -60,14 +51,12 @@ def command(
 ) -> None:
     """Intervals of the frequencies of STUDY from the scatter in its [uncertain], and which input causes them.
 
-    With --backbones also those of a mode's frequency and damping against its amplitude. With --assemblies the scatter
-    of one structure that is taken apart and bolted together again.
+    With --assemblies the scatter of one structure that is taken apart and bolted together again.
 
     Finished work is saved next to the output; the same command resumes after an interruption.
     """
     from faying.identify import prediction as drawing
     from faying.identify.predict import check, predict
-    from faying.identify.sampling.follow import choice_of
     from faying.output.prediction import text
     from faying.output.report_predicted import predicted
     from faying.study import Study
@@ -79,23 +68,15 @@ def command(
             raise InputError(f"--assemblies gives tables and a file; leave out --{min(given)}")
         _assembled(Study.read(study), assemblies, seed, jobs=jobs, out=out, as_json=as_json, progress=progress)
         return
-    if bands and not backbones:
-        raise InputError("--bands draws backbones; ask for them with --backbones 32")
-    figures = {
-        drawing.intervals: plot,
-        drawing.tornado: tornado,
-        drawing.backbones: bands,
-    }
+    figures = {drawing.intervals: plot, drawing.tornado: tornado}
     for file in filter(None, figures.values()):
         check_figure(file)
     plan = Study.read(study)
     check(plan, samples)
-    if backbones:
-        choice_of(plan, samples, backbones)
     out = out or plan.results / "prediction.nc"
     with new_folder(out.parent, "give another file with --out"), Shown("predict", progress) as report:
         jobs = jobs or os.cpu_count() or 1
-        found = predict(plan, samples, seed, jobs=jobs, out=out, report=report, backbones=backbones or 0)
+        found = predict(plan, samples, seed, jobs=jobs, out=out, report=report)
     files = [out, *(save(draw(found), file) for draw, file in figures.items() if file)]
     if html:
         files.append(write_text(html, predicted(found)))

@@ -17,10 +17,6 @@ def read_form(table: Table) -> Form | None:
     for key, shape in (("seed", "flatness"), ("wave_length", "wave")):
         if key in table.data and shape not in table.data:
             table.faults.add(f"{table.where}.{key} belongs to {shape}, which is missing; give that, or leave {key} out")
-    if not {*others} - {"seed", "wave_length", "along"} and not table.get("flat"):
-        if "along" in others:
-            table.faults.add(f"{table.where}.along turns a shape, and none is given; give one, or leave along out")
-        return None
     given = {name: table.get(name) for name in PARAMETERS}
     along = table.get("along")
     maps: dict[str, Any] = {
@@ -29,6 +25,10 @@ def read_form(table: Table) -> Form | None:
         "second": table.inner("second", _face),
         "waviness": table.inner("waviness", read_waviness),
     }
+    if not {*others} - {"seed", "wave_length", "along"} and not table.get("flat"):
+        if "along" in others:
+            table.faults.add(f"{table.where}.along turns a shape, and none is given; give one, or leave along out")
+        return None
     values = {name: value for name, value in given.items() if value is not None}
     return table.made(lambda: Form(**values, along=along, **maps))
 
