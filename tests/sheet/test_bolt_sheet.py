@@ -59,7 +59,7 @@ HAND = {
     "F_Smax": lambda v: v["F_Mmax"] + v["F_SAM"] + v["F_thg"],
     "sigma_redB": lambda v: mises(v["F_Smax"] / (pi * v["d_0"] ** 2 / 4), 8 * v["M_G"] / (pi * v["d_0"] ** 3)),
     "sigma_ASV": lambda v: (127.5 / (v["d"] * 1e3) + 38.25) * 1e6,
-    "sigma_a": lambda v: (v["F_SAo"] - v["F_SAu"]) / 2 / v["A_S"],
+    "sigma_a": lambda v: (v["F_SAo"] - v["F_SAu"]) / 2 / v["A_S"] + v["sigma_b"],
     "p_M": lambda v: v["F_Mmax"] / v["A_p"],
     "p_B": lambda v: v["F_Smax"] / v["A_p"],
     "F_nut": lambda v: v["F_Mmax"],
@@ -373,6 +373,12 @@ def test_loads_of_the_sheet_are_those_of_a_case(made):
     assert most == pytest.approx(at_least["pull"] - at_least["warm"], rel=1e-6)
     assert least < -1  # of the case that presses
     assert sheet.row("F_SAM").result.value == pytest.approx(at_greatest["pull"] - at_greatest["warm"], rel=1e-6)
+    area = values["A_S"]
+    modulus = pi / 32 * sqrt(4 * area / pi) ** 3  # of a round section that is as large
+    moments = [found.bolt_moment[found.index(name), 0] for name in ("cold", "press")]
+    bent = sum(moments) / modulus / 2
+    assert bent > 0.1e6
+    assert values["sigma_b"] == pytest.approx(bent, rel=0.05)  # heat that acts beside hardens the joint, as above
 
 
 @pytest.mark.slow
@@ -450,6 +456,7 @@ def test_a_load_factor_below_0_is_explained_and_taken_as_it_is(made, monkeypatch
         introduction=-0.05,
         thermal_loss=None,
         thermal_gain=0.0,
+        bending=0.0,
         damage=0.2,
     )
     monkeypatch.setattr(

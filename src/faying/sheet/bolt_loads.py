@@ -37,6 +37,8 @@ class AtPreload:
         introduction: n, that makes the load factor the one that was found under the greatest working load [-].
         thermal_loss: Greatest loss of preload by temperature [N]; None where no case changes a temperature.
         thermal_gain: Greatest gain of preload by temperature [N].
+        bending: Range of the bending moment without heat [N m], at most, between the two cases that have the greatest;
+            NaN where it is not known.
         damage: By the cycles of all cases [-]; None where none has any.
     """
 
@@ -47,6 +49,7 @@ class AtPreload:
     introduction: float
     thermal_loss: float | None
     thermal_gain: float
+    bending: float
     damage: float | None
 
 
@@ -161,6 +164,7 @@ def _at_preload(found: LoadCases, k: int, names: Sequence[str], share: float, pa
         introduction=float(factor),
         thermal_loss=max(float((-heat).max()), 0.0) + 0.0 if heated else None,
         thermal_gain=max(float(heat.max()), 0.0),
+        bending=float(sum(sorted((found.bolt_moment[found.index(name), k] for name in across), reverse=True)[:2])),
         damage=float(found.damage[rows, k].sum()) if found.cycles[rows].any() else None,
     )
 

@@ -1,5 +1,6 @@
 """The sheet of each bolt of a study: steps R0 to R13 of VDI 2230 with the numbers of this structure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
@@ -10,6 +11,7 @@ import numpy as np
 from faying.answer.bolt_numbers import bolt_numbers
 from faying.answer.tracks import shapes_of
 from faying.bolt.bolt import Bolt, FittedBolt
+from faying.bolt.fatigue import bending_modulus
 from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import Thread
 from faying.bolt.vdi2230 import DEFAULT_FRICTION, TIGHTENED
@@ -24,7 +26,7 @@ from faying.joint.strength import seat_limit
 from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.bolts import BoltNumbers
-from faying.sheet.bolt_loads import BoltLoad, bolt_loads
+from faying.sheet.bolt_loads import AtPreload, BoltLoad, bolt_loads
 from faying.sheet.rows import Quantity, Row, evaluate
 from faying.sheet.steps import SHEAR, steps
 from faying.study.keys.bolt_sheet import BoltSheetChoice, choice_of, frictions_of
@@ -168,6 +170,7 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
             *_compliances(numbers, index, choice),
             *_departures(float(numbers.load_factor[0, index]), choice, found),
             *_cycles(damage),
+            _bending(_metric(bolt), states),
             *_seats(case, index, numbers, force, choice),
         )
     }
@@ -187,6 +190,14 @@ def _cycles(damage: float | None) -> list[Quantity]:
         _quantity("D_c", "damage by the cycles of load cases, bending included", "", damage, ""),
         _quantity("D_1", "damage at failure", "", 1.0, ""),
     ]
+
+
+def _bending(thread: Thread | None, states: Sequence[AtPreload | None]) -> Quantity:
+    """Amplitude of the stress by bending under load cases; 0 where none tells it."""
+    known = [one.bending for one in states if one is not None and isfinite(one.bending)]
+    stress = max(known) / bending_modulus(thread.stress_area) / 2 if known and thread is not None else 0.0
+    name = f"amplitude of the bending stress, at most, of the three preloads{'' if known else ' (not told: none)'}"
+    return _quantity("sigma_b", name, "Pa", stress, "")
 
 
 def _departures(factor: float, choice: BoltSheetChoice, found: BoltLoad | None) -> list[Quantity]:

@@ -159,8 +159,8 @@ STEPS = (
     ),
     _step(
         "R9 sigma_a [Pa]: alternating stress",
-        "half of the range of the additional bolt force, over the stress area",
-        lambda F_SAu, F_SAo, A_S: (F_SAo - F_SAu) / (2 * A_S),
+        "half of the range of the additional bolt force, over the stress area + amplitude of the bending stress",
+        lambda F_SAu, F_SAo, A_S, sigma_b: (F_SAo - F_SAu) / (2 * A_S) + sigma_b,
         limit="sigma_ASV",
     ),
     _step(
