@@ -157,6 +157,16 @@ def test_a_round_face_has_waves_that_do_not_turn_with_its_mesh():
     assert np.ptp(held) > 0.5e-6
 
 
+@pytest.mark.parametrize("size", [(0.08, 0.04, 0.01), (0.06, 0.06, 0.01)])
+def test_the_order_of_the_faces_does_not_mirror_the_waves(size):
+    mesh = stacked(size=size, counts=(6, 6, 1))
+    places, area = (getattr(plates(mesh).joints[0].interface, name) for name in ("positions", "weights"))
+    form = Form(waviness=Waviness(Wq=1e-6, shortest=5e-3, seed=2))
+    there, back = (FaceAxes.of(mesh, faces, join(mesh, *faces)) for faces in (FACES, FACES[::-1]))
+    assert there.normal == pytest.approx(-back.normal)
+    assert form.at(places, there, area) == pytest.approx(form.at(places, back, area), abs=1e-15)
+
+
 def test_waves_add_to_other_shapes_and_vary_by_key():
     mesh = stacked(counts=(8, 4, 1))
     interface = plates(mesh).joints[0].interface

@@ -90,21 +90,26 @@ class FaceAxes:
         return np.asarray((positions - self.origin) @ np.stack([self.x_axis, self.y_axis]).T)
 
     def steady(self, positions: Array) -> Array:
-        """Places (q, 2) [m] from its middle, along axes that do not turn with the mesh where the face is round.
+        """Places (q, 2) [m] from its middle, along axes that do not turn with the mesh or the order of the faces.
 
-        The rectangle's own where its longer side is known; else x is an axis of the model, laid into the face.
+        x is that of the rectangle where its longer side is known; else an axis of the model, laid into the face.
         """
-        if self.certain:
-            return self.local(positions)
-        helper = np.eye(3)[np.argmin(np.round(np.abs(self.normal), 6))]
-        x = helper - self.normal * (self.normal @ helper)
-        x /= np.linalg.norm(x)
-        return np.asarray((positions - self.origin) @ np.stack([x, np.cross(self.normal, x)]).T)
+        x = self.x_axis
+        if not self.certain:
+            helper = np.eye(3)[np.argmin(np.round(np.abs(self.normal), 6))]
+            x = helper - self.normal * (self.normal @ helper)
+            x /= np.linalg.norm(x)
+        return np.asarray((positions - self.origin) @ np.stack([x, np.cross(_upwards(self.normal), x)]).T)
+
+
+def _upwards(direction: Array) -> Array:
+    """A direction or its opposite (3,), the one whose largest component is above 0."""
+    return np.asarray(direction * np.sign(direction[np.argmax(np.abs(direction) > np.abs(direction).max() - 1e-9)]))
 
 
 def _box(mesh: Faces, faces: tuple[str, str], normal: Array, x: Array) -> tuple[Array, Array, Array, Sides]:
     """Axes, middle and sides of the box that both faces share along x; x points where its largest component is > 0."""
-    x = x * np.sign(x[np.argmax(np.abs(x) > np.abs(x).max() - 1e-9)])
+    x = _upwards(x)
     y = np.cross(normal, x)
     ends = [mesh.points[mesh.face_nodes(face)] @ np.stack([x, y]).T for face in faces]
     low = np.max([end.min(axis=0) for end in ends], axis=0)
