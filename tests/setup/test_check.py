@@ -446,6 +446,8 @@ def test_check_and_run_refuse_the_same_form_in_the_same_words(tmp_path, where, v
     text = edited(edited(file.read_text(), ("joint", 0, "form", "flat"), None), ("joint", 0, "form", *where), value)
     if where == ("wave",):
         text = edited(text, ("joint", 0, "form", "wave_length"), "40 mm")
+    if where == ("along",):
+        text = edited(text, ("joint", 0, "form", "twist"), "1 um")
     file.write_text(text)
     for mesh in (True, False):
         (fault,) = check(file, mesh=mesh).faults

@@ -170,7 +170,7 @@ class Bolt:
     thread: Thread | None
     shank: float | None
     head: Head
-    friction: tuple[float | None, float | None]
+    friction: tuple[float | None, float | None] | None
     part: ClassVar[None] = None  # it is not a part of the mesh
 
     def __init__(
@@ -190,7 +190,7 @@ class Bolt:
         thread: Thread | str | None = None,
         shank: float | str | None = None,
         head: Head = "hexagon",
-        friction: tuple[float | None, float | None] = (None, None),
+        friction: tuple[float | None, float | None] | None = None,
     ) -> None:
         what = f"bolt {name!r}"
         if (diameter is None) != (material is None):
