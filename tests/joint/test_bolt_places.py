@@ -98,7 +98,7 @@ def test_a_seat_wider_than_its_face_counts_as_what_lies_on_it():
     mesh = rings()
     wide = bolt(seat=(2 * INNER, "50 mm")).fitted(mesh)
     seat = wide.pressed[0]
-    assert (seat.inner, seat.outer, seat.full) == (2 * INNER, pytest.approx(2 * OUTER, rel=1e-6), True)
+    assert (seat.inner, seat.outer, seat.is_ring) == (2 * INNER, pytest.approx(2 * OUTER, rel=1e-6), True)
     assert least_seat_area(wide) == pytest.approx(np.pi * (OUTER**2 - INNER**2), rel=1e-6)
     head, nut = structure(mesh, bolt(seat=(2 * INNER, "50 mm"))).notes
     assert (head.code, nut.code) == ("seat-beyond-face", "seat-beyond-face")
@@ -128,7 +128,7 @@ def test_a_seat_over_an_edge_has_the_area_of_a_segment(x):
 
     seat = Seat.of(mesh, "p1.right", Line(point=point, axis=axis), (2 * r, 2 * R))
     assert seat.area == pytest.approx(inside(R) - inside(r), rel=1e-9)
-    assert (seat.full, bool(seat.beyond)) == (x > R, x < R)
+    assert bool(seat.beyond) == (x < R)
 
 
 def test_a_seat_that_nothing_tells_is_asked_for():

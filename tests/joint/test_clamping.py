@@ -268,7 +268,7 @@ def test_two_bolts_share_a_joint_by_the_nearer_axis():
 def test_a_face_that_is_a_ring_is_a_seat():
     structure, *_ = sleeve()
     seat = structure.fitted_bolts[0].pressed[0]
-    assert (seat.inner, seat.outer, seat.full) == (pytest.approx(HOLE), pytest.approx(20e-3), True)
+    assert (seat.inner, seat.outer, seat.is_ring) == (pytest.approx(HOLE), pytest.approx(20e-3), True)
     area = pi / 4 * (20e-3**2 - HOLE**2)
     assert cone_of(structure, LoadPaths.of(structure), 0) == pytest.approx(26e-3 / (210e9 * area), rel=5e-3)
 

@@ -19,14 +19,14 @@ class Seat:
     Args:
         inner, outer: Diameters [m], no wider than the hole and the edge of the face are where these are round.
         area: What lies on the face [m2].
-        full: Whether the face fills the ring between both diameters.
+        is_ring: Whether it is one between both diameters, some of which may be missing; a whole face may have any form.
         beyond: What is to be said where the ring that was given is wider than its face; "" where it is not.
     """
 
     inner: float
     outer: float
     area: float
-    full: bool = True
+    is_ring: bool = True
     beyond: str = ""
 
     @classmethod
@@ -41,7 +41,7 @@ class Seat:
         if ring is None:
             area = face_centre(mesh.points, blocks)[2]
             inner, outer = min(ends, (0.0, ends[1]), key=lambda one: _off(area, one))  # nodes may miss the middle
-            return cls(inner=inner, outer=outer, area=area, full=_off(area, (inner, outer)) < ROUND)
+            return cls(inner=inner, outer=outer, area=area, is_ring=_off(area, (inner, outer)) < ROUND)
         inner, outer = ring
         area = Ring(point=line.point, axis=line.axis, inner=inner / 2, outer=outer / 2).area_on(mesh.points, blocks)
         given = pi / 4 * (outer**2 - inner**2)
@@ -54,12 +54,11 @@ class Seat:
                 "their unit"
             )
         within = max(inner, ends[0]), min(outer, ends[1])
-        full = _off(area, within) < ROUND
-        if full:
+        if _off(area, within) < ROUND:
             inner, outer = within
             area = pi / 4 * (outer**2 - inner**2)
         beyond = f"of its ring of {what} only {area / given:.0%} lie on {face!r}; the seat counts as that"
-        return cls(inner=inner, outer=outer, area=area, full=full, beyond=beyond)
+        return cls(inner=inner, outer=outer, area=area, beyond=beyond)
 
     @property
     def mean_diameter(self) -> float:

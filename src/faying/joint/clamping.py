@@ -155,7 +155,7 @@ def cone_of(structure: BoltedStructure, paths: LoadPaths, index: int) -> float:
     if not isinstance(fitted, FittedBolt) or not cuts:
         return NAN
     seat = fitted.pressed[0]
-    if not seat.full:
+    if not seat.is_ring:
         return NAN
     ends = [mesh.face_part[face] for face in fitted.bolt.faces]
     names = [*(cut.parts[0] for cut in cuts), cuts[-1].parts[1]]

@@ -97,7 +97,7 @@ def _weights(
     mesh: NamedFaces, place: BoltPlace | SolidPlace, pairs: Sequence[tuple[str, str]], depth: float
 ) -> tuple[Array, float]:
     """Integral of the pressure of a bolt over each joint, 1 at its hole [m2] (j,), and over its cone."""
-    if isinstance(place, SolidPlace) or not place.pressed[0].full:
+    if isinstance(place, SolidPlace) or not place.pressed[0].is_ring:
         return np.zeros(len(pairs)), 0.0
     hole, seat = place.pressed[0].inner, place.pressed[0].outer
     near = min(depth, place.length - depth)
@@ -269,7 +269,7 @@ def _rim(sketch: Sketch, one: Share, mine: float) -> tuple[float, float] | None:
     mine: its share of the area of a joint that alone takes its force [m2]; of several the cone is as wide as it will.
     """
     place = one.place
-    if isinstance(place, SolidPlace) or not place.pressed[0].full:
+    if isinstance(place, SolidPlace) or not place.pressed[0].is_ring:
         return None
     hole, seat = place.pressed[0].inner, place.pressed[0].outer
     near = min(one.depth, place.length - one.depth)

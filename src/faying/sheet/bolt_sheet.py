@@ -353,7 +353,7 @@ def _seats(case: Case, index: int, numbers: BoltNumbers, force: float, choice: B
     pressure = float(numbers.seat_pressure[0, index])
     area = force / pressure if isfinite(pressure) and pressure > 0 else None
     pressed = fitted.pressed if isinstance(fitted, FittedBolt) else ()
-    head = pressed[0] if pressed and pressed[0].full else None
+    head = pressed[0] if pressed and pressed[0].is_ring else None
     thread = fitted.thread if isinstance(fitted, FittedBolt) else None
     seat = "bolt.seat, of a bolt that is not in the mesh"
     found = [seat_limit(case.structure, face) for face, _ in zip(fitted.bolt.faces, pressed, strict=False)]

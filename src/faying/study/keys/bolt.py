@@ -41,7 +41,7 @@ def read_bolt(
         bolt = SolidBolt(name=name, part=part, faces=faces, at=at, fastener=fastener)
     else:
         material = named_material(table, materials, f"bolt {name!r}")
-        washers = tuple(table.every("washer", lambda one: _washer(one, name, materials)))
+        washers = table.every("washer", lambda one: _washer(one, name, materials))
         given = {key: table.get(key) for key in ("seat", "head_mass", "nut_mass", "engaged", "shank", "head")}
         idle = [key for key in ("head_mass", "nut_mass", "shank", "head") if key in table.data]
         if idle and "material" not in table.data:
