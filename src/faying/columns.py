@@ -14,7 +14,7 @@ import numpy as np
 
 from faying import checks
 from faying.errors import InputError, ReadError
-from faying.files import refuse_decimal_comma
+from faying.files import LATIN, refuse_decimal_comma
 from faying.memory import require
 from faying.typing import Array
 from faying.units import scale
@@ -151,7 +151,7 @@ def read_columns(
     """
     try:
         hold_table(checks.path(path, "path"))
-        text = path.read_text(encoding="utf-8-sig")
+        text = path.read_text(encoding="utf-8-sig", errors=LATIN)
     except (OSError, UnicodeDecodeError) as fault:
         raise ReadError(f"{path}: cannot be read as text ({fault})") from None
     lines = [(i, bare) for i, line in enumerate(text.splitlines(), start=1) if (bare := line.partition("#")[0].strip())]
@@ -308,7 +308,7 @@ def table_in_one_go(path: Path, columns: int, *, delimiter: str | None, skip: in
 
 def _in_one_go(path: Path, columns: int) -> Any:
     """What `read_numbers` reads, where every line from the first row on is one; else None."""
-    with path.open(encoding="utf-8-sig", errors="replace") as handle:
+    with path.open(encoding="utf-8-sig", errors=LATIN) as handle:
         for skip, line in enumerate(handle):
             text = line.split("#")[0]
             refuse_decimal_comma(text, f"{path.name}, line {skip + 1}")
@@ -439,7 +439,7 @@ def _heading(path: Path, wanted: Sequence[Wanted], form: str) -> tuple[tuple[Cel
 def _above(path: Path) -> list[tuple[int, str]]:
     """The lines above the first row of numbers, with their numbers; blank ones left out."""
     out: list[tuple[int, str]] = []
-    with path.open(encoding="utf-8-sig", errors="replace") as handle:
+    with path.open(encoding="utf-8-sig", errors=LATIN) as handle:
         for number, line in enumerate(handle, start=1):
             if len(_numbers(line.split("#")[0])) > 1:
                 return out
@@ -473,7 +473,7 @@ def read_numbers(path: Path, columns: int, form: str) -> Any:
     if table is not None:
         return table
     rows: list[list[float]] = []
-    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), start=1):
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors=LATIN).splitlines(), start=1):
         text = line.split("#")[0]
         refuse_decimal_comma(text, f"{path.name}, line {number}")
         if not text.replace(",", " ").replace(";", " ").split():

@@ -1,5 +1,6 @@
 """Files that appear whole or not at all, and rows of numbers read from text."""
 
+import codecs
 import errno
 import hashlib
 import os
@@ -17,6 +18,16 @@ from typing import IO, Any
 from zipfile import ZipFile
 
 from faying.errors import InputError, ReadError
+
+LATIN = "faying-latin"  # errors of a text that is read: what is not UTF-8 is Latin-1, as instruments write their µ
+
+
+def _latin(fault: UnicodeError) -> tuple[str, int]:
+    assert isinstance(fault, UnicodeDecodeError)
+    return fault.object[fault.start : fault.end].decode("latin-1"), fault.end
+
+
+codecs.register_error(LATIN, _latin)
 
 
 def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:

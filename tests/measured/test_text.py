@@ -19,6 +19,14 @@ def test_columns_and_lists_of_complex_numbers_agree(tmp_path):
     np.testing.assert_array_equal(a.values[0, 0], values)
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_degrees_and_squares_are_read_in_the_encoding_of_the_instrument(tmp_path, encoding):
+    file = tmp_path / "a.csv"
+    file.write_bytes("frequency [Hz],magnitude [m/s²/N],phase [°]\n1,2,90\n2,3,180\n".encode(encoding))
+    frf = read_frf_text([file], quantity="accelerance")
+    np.testing.assert_allclose(frf.values.ravel(), [2j, -3], atol=1e-12)
+
+
 def test_several_frfs_in_one_table(tmp_path):
     file = tmp_path / "a.txt"
     file.write_text("# two FRFs\n0 1 2 3 4\n1; 5; 6; 7; 8\n")

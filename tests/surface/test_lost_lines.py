@@ -18,6 +18,15 @@ def read(path, content, **given):
     return read_scan(path, **({"xy_unit": "um", "z_unit": "um"} | given))
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_a_micro_sign_is_read_in_the_encoding_of_the_instrument(tmp_path, encoding):
+    path = tmp_path / "p.txt"
+    path.write_bytes(f"X [µm]\tZ [µm]\n{LINE}".encode(encoding))
+    found = read_scan(path)
+    assert found.heights[50] == pytest.approx(1e-6 * np.sin(50 / 3), abs=1e-12)
+    assert found.length == pytest.approx(50e-6)
+
+
 @pytest.mark.parametrize("word", ["***", "BAD", "nan"])
 def test_a_missing_height_under_several_lines_of_words_is_one_missing_point(tmp_path, word):
     lines = LINE.splitlines()

@@ -12,7 +12,7 @@ import numpy as np
 
 from faying.columns import Cell, in_brackets, is_unit, plain_unit, split_heading, states_unit
 from faying.errors import InputError, ReadError
-from faying.files import end_of, refuse_decimal_comma
+from faying.files import LATIN, end_of, refuse_decimal_comma
 from faying.measured.frf import FRF, UNITS, Dof, without_static
 from faying.measured.uff_units import DIMENSIONS, unit_factor
 from faying.typing import Array, Complex
@@ -282,7 +282,7 @@ def read_frf_text(
 def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex, Array, tuple[str, ...]]:
     """Frequencies, values and coherence (functions, frequencies), NaN where none is given, and notes."""
     try:
-        text = path.read_text(encoding="utf-8-sig", errors="replace")
+        text = path.read_text(encoding="utf-8-sig", errors=LATIN)
     except OSError as fault:
         raise ReadError(f"{path}: cannot be read ({fault.strerror or fault})") from None
     numbered = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]

@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.columns import line_count, mark_of, plain_unit, row_of_units, split_heading, states_unit, table_in_one_go
 from faying.errors import ReadError
-from faying.files import refuse_decimal_comma
+from faying.files import LATIN, refuse_decimal_comma
 from faying.surface.heights import BYTES, check_points
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
@@ -74,7 +74,7 @@ def layout(path: Path) -> TextLayout | None:
         head = handle.read(65536)
     if not head.strip() or b"\0" in head:
         return None
-    lines = [line for line in head.decode("utf-8-sig", "replace").splitlines() if line.strip()]
+    lines = [line for line in head.decode("utf-8-sig", LATIN).splitlines() if line.strip()]
     comments = [line.strip() for line in lines if line.lstrip().startswith("#")]
     if sum(_SIZE.match(line) is not None for line in comments) > 2:
         raise ReadError(f"{path}: its comments state more than one size; export each map to a file of its own")
@@ -255,7 +255,7 @@ def _table(path: Path, how: TextLayout) -> Array:
 def _quickly(path: Path, how: TextLayout) -> Array | None:
     """All rows in one go; None where something is to be said of one, or some words are not numbers."""
     skip, heading, first = 0, how.heading, ""
-    with path.open(encoding="utf-8-sig", errors="replace") as handle:
+    with path.open(encoding="utf-8-sig", errors=LATIN) as handle:
         for line in handle:
             if line.strip() and not line.lstrip().startswith("#"):
                 if not heading:
@@ -272,7 +272,7 @@ def _line_by_line(path: Path, how: TextLayout) -> Array:
     rows: list[list[float]] = []
     skip = how.heading
     expected = f"a row of {how.columns} heights" if how.matrix else "x,y,z (or x,z)"
-    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), 1):
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors=LATIN).splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         if skip:
@@ -295,7 +295,7 @@ def refuse_lost(path: Path, points: int, *, unit: bool) -> None:
     points: how many heights were found; unit: whether one was. Readers that take any text lose lines without a row of
     numbers, marks of points that are not valid, and units that they do not know.
     """
-    numbered = enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), 1)
+    numbered = enumerate(path.read_text(encoding="utf-8-sig", errors=LATIN).splitlines(), 1)
     lines = [(number, line.strip()) for number, line in numbered if line.strip() and not line.lstrip().startswith("#")]
     start = next((k for k, (_, line) in enumerate(lines) if _row(line) is not None), len(lines))
     head = [line for _, line in lines[:start]]
