@@ -72,7 +72,7 @@ def test_from_the_form_alone_by_keyboard_alone_to_a_result(browser, server, exam
             "preload",
             "count",
         ]  # all other lines and comments stay
-        assert 'preload = ["6 kN", "9 kN"]            # one or more, rising' in text
+        assert 'preload = ["6 kN", "9 kN"]            # one or more, in turn' in text
         until(page, "document.querySelector('#check-hint').textContent === 'no fault'")
         page.focus("#tab-form")
         page.keyboard.press("ArrowRight")

@@ -71,8 +71,8 @@ def changed_lines(before, after):
         (
             ("bolt", 0, "preload"),
             "9 kN",
-            ['preload = ["8 kN", "15 kN"]            # one or more, rising\n'],
-            ['preload = "9 kN"            # one or more, rising\n'],
+            ['preload = ["8 kN", "15 kN"]            # one or more, in turn\n'],
+            ['preload = "9 kN"            # one or more, in turn\n'],
         ),
         (("modes", "intervals"), False, [], ["intervals = false\n"]),
         (("surface", "counter"), None, [next(x for x in STUDY.splitlines(True) if x.startswith("counter"))], []),

@@ -74,6 +74,9 @@ def command(
         click.echo(f"{mode:4d} {low:9.2f} Hz {high:9.2f} Hz")
     for text, count in done.reasons.items():
         click.echo(f"note: {count} point{'s have' if count > 1 else ' has'} no answer: {text}")
+    for axis in axes:
+        if axis.key.startswith("material."):
+            click.echo(f"note: {axis.key} is that of the parts; the law keeps that of the study, and bolts theirs")
     for key in done.unchanged_by():
         click.echo(f"note: {key} changes no answer by more than the tolerance: nothing in this study depends on it")
     if summary["beyond_law"]:
