@@ -128,7 +128,7 @@ def test_a_seat_over_an_edge_has_the_area_of_a_segment(x):
 
     seat = Seat.of(mesh, "p1.right", Line(point=point, axis=axis), (2 * r, 2 * R))
     assert seat.area == pytest.approx(inside(R) - inside(r), rel=1e-9)
-    assert bool(seat.beyond) == (x < R)
+    assert bool(seat.overhang) == (x < R)
 
 
 def test_a_seat_that_nothing_tells_is_asked_for():

@@ -28,7 +28,7 @@ def strips(*edges):
 def shared(mesh, count, depths=None, ring=(HOLE, SEAT)):
     bolt = faying.Bolt("bolt", ("up 0", "down 0"), seat=ring)
     axis = np.array([0.0, 0.0, -1.0])
-    pressed = (Seat(inner=ring[0], outer=ring[1], area=1e-4),)
+    pressed = (Seat(face="up 0", inner=ring[0], outer=ring[1], area=1e-4),)
     place = BoltPlace(bolt=bolt, point=np.array([0, 0, DEPTH]), axis=axis, length=LENGTH, ring=ring, pressed=pressed)
     names = [f"joint {k}" for k in range(count)]
     found = load_shares(

@@ -80,7 +80,7 @@ def _limit(structure: Structure, fitted: FittedBolt | FittedSolidBolt) -> float:
     """The pressure [Pa] that the softer of a bolt's seats bears; NaN for a meshed bolt, or where one is not known."""
     if not isinstance(fitted, FittedBolt):
         return NAN
-    limits = [seat_limit(structure, face) for face, _ in zip(fitted.bolt.faces, fitted.pressed, strict=False)]
+    limits = [seat_limit(structure, seat.face) for seat in fitted.pressed]
     return NAN if None in limits else min(limit[0] for limit in limits if limit is not None)
 
 

@@ -268,8 +268,7 @@ def _outline(structure: Structure, shapes: Sequence[Array], states: Sequence[Loa
 def _made_of(structure: Structure) -> dict[str, Any]:
     """Fields of the result that say what the structure is made of."""
     bolts = structure.fitted_bolts
-    heads = [bolt.pressed[0] if isinstance(bolt, FittedBolt) else None for bolt in bolts]
-    extents = [(np.nan, np.nan) if head is None else (head.inner, head.outer) for head in heads]
+    extents = [bolt.pressed[0].diameters if isinstance(bolt, FittedBolt) else (np.nan, np.nan) for bolt in bolts]
     return {
         "parts": tuple(structure.mesh.parts),
         "part_masses": structure.part_masses,

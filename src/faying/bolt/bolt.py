@@ -383,15 +383,20 @@ class Bolt:
             return self.seat[1]
         return ACROSS_FLATS * self.diameter if self.diameter else np.inf
 
+    @property
+    def stated_ring(self) -> tuple[float, float] | None:
+        """Inner and outer diameter [m] of the seat or else of the washers; None where neither is given."""
+        if self.seat is None and self.washers:
+            return self.washers[0].inner, self.washers[0].outer
+        return self.seat
+
     def _seat(self, hole: Hole | None, *, alone: bool) -> tuple[float, float] | None:
         """Inner and outer diameter [m] of the ring, None for the whole faces.
 
         alone: whether nothing but the faces says where the bolt is.
         """
-        if self.seat is not None:
-            return self.seat
-        if self.washers:
-            return self.washers[0].inner, self.washers[0].outer
+        if self.stated_ring is not None:
+            return self.stated_ring
         if alone:
             return None
         inner = 0.0 if hole is None else 2 * hole.radius
@@ -469,7 +474,7 @@ class BoltPlace:
             ring = " to ".join(show(d, "m") for d in self.ring)
             text = f"bolt {bolt.name!r} has no seat: it presses a ring of {ring}, from its hole and its size"
             notes.append(Note(code="bolt-seat", text=text))
-        wide = [f"bolt {bolt.name!r}: {seat.beyond}" for seat in self.pressed if seat.beyond]
+        wide = [f"bolt {bolt.name!r}: {seat.overhang}" for seat in self.pressed if seat.overhang]
         notes += [Note(code="seat-beyond-face", text=text) for text in wide]
         if self.thread is not None and bolt.engaged is None:
             length = show(self.thread.high, "m", digits=3)

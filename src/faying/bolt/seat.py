@@ -17,17 +17,19 @@ class Seat:
     """What a head, a nut or a washer presses of a face.
 
     Args:
+        face: Its name.
         inner, outer: Diameters [m], no wider than the hole and the edge of the face are where these are round.
         area: What lies on the face [m2].
         is_ring: Whether it is one between both diameters, some of which may be missing; a whole face may have any form.
-        beyond: What is to be said where the ring that was given is wider than its face; "" where it is not.
+        overhang: What is to be said where the ring that was given is wider than its face; "" where it is not.
     """
 
+    face: str
     inner: float
     outer: float
     area: float
     is_ring: bool = True
-    beyond: str = ""
+    overhang: str = ""
 
     @classmethod
     def of(cls, mesh: NamedFaces, face: str, line: Line, ring: tuple[float, float] | None) -> "Seat":
@@ -41,12 +43,12 @@ class Seat:
         if ring is None:
             area = face_centre(mesh.points, blocks)[2]
             inner, outer = min(ends, (0.0, ends[1]), key=lambda one: _off(area, one))  # nodes may miss the middle
-            return cls(inner=inner, outer=outer, area=area, is_ring=_off(area, (inner, outer)) < ROUND)
+            return cls(face=face, inner=inner, outer=outer, area=area, is_ring=_off(area, (inner, outer)) < ROUND)
         inner, outer = ring
         area = Ring(point=line.point, axis=line.axis, inner=inner / 2, outer=outer / 2).area_on(mesh.points, blocks)
         given = pi / 4 * (outer**2 - inner**2)
         if _off(area, ring) < ROUND:
-            return cls(inner=inner, outer=outer, area=given)
+            return cls(face=face, inner=inner, outer=outer, area=given)
         what = f"{show(inner, 'm')} to {show(outer, 'm')}"
         if area < 1e-6 * given:
             raise InputError(
@@ -57,8 +59,13 @@ class Seat:
         if _off(area, within) < ROUND:
             inner, outer = within
             area = pi / 4 * (outer**2 - inner**2)
-        beyond = f"of its ring of {what} only {area / given:.0%} lie on {face!r}; the seat counts as that"
-        return cls(inner=inner, outer=outer, area=area, beyond=beyond)
+        overhang = f"of its ring of {what} only {area / given:.0%} lie on {face!r}; the seat counts as that"
+        return cls(face=face, inner=inner, outer=outer, area=area, overhang=overhang)
+
+    @property
+    def diameters(self) -> tuple[float, float]:
+        """Inner and outer diameter [m]."""
+        return self.inner, self.outer
 
     @property
     def mean_diameter(self) -> float:

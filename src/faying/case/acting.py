@@ -14,7 +14,7 @@ from faying.fe.sides import face_centre
 from faying.joint.attachments import nearest_node
 from faying.joint.bolted import BoltedStructure
 from faying.joint.joint import known_face
-from faying.study.load import Displacement, Force, Load
+from faying.study.load import Displacement, Force, Load, not_held
 from faying.typing import Array
 from faying.units import show
 
@@ -95,7 +95,7 @@ def _own(structure: BoltedStructure, load: Load) -> Acting:
     heat, longer, strains = _heat(structure, load.temperature, what)
     moved = np.zeros((len(mesh.points), 3))
     for displacement in load.displacements:
-        _move(structure, displacement, moved, what)
+        _move(structure, displacement, moved, load.name)
     return Acting(force=force + heat, moved=_with_all_moved(structure, moved.ravel()), longer=longer, strains=strains)
 
 
@@ -176,8 +176,9 @@ def _expansion(material: object, what: str) -> float:
     return float(found)
 
 
-def _move(structure: BoltedStructure, one: Displacement, moved: Array, what: str) -> None:
+def _move(structure: BoltedStructure, one: Displacement, moved: Array, load: str) -> None:
     """Put the displacement of a supported face in its place."""
+    what = f"load {load!r}"
     known_face(structure.mesh, one.face, what)
     nodes = structure.mesh.face_nodes(one.face)
     supported = np.zeros(structure.mesh.unknowns, dtype=bool)
@@ -186,10 +187,7 @@ def _move(structure: BoltedStructure, one: Displacement, moved: Array, what: str
         if not size:
             continue
         if not supported[3 * nodes + axis].all():
-            raise InputError(
-                f"{what}: the face {one.face!r} is moved along {'xyz'[axis]}, in which no rigid support holds all of "
-                "it; give it a [[support]] without stiffness in that direction, or a force in place of the displacement"
-            )
+            raise InputError(not_held(load, one.face, "xyz"[axis]))
         taken = (moved[nodes, axis] != 0) & (moved[nodes, axis] != size)
         if np.any(taken):
             raise InputError(

@@ -32,9 +32,9 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
-from faying.study.load import Displacement, Force, Pressure
+from faying.study.load import Displacement, Force, Pressure, not_held
 from faying.study.study import Study
-from faying.study.vibration import not_held
+from faying.study.vibration import not_held as not_shaken
 from faying.typing import Array
 from faying.units import show
 
@@ -274,7 +274,7 @@ def name_faults(
     ]
     faults += [*_heated(study), *_moved(study)]
     faults += [
-        (f"vibration[{k}]", not_held(one.name))
+        (f"vibration[{k}]", not_shaken(one.name))
         for k, one in enumerate(study.vibrations, 1)
         if one.base and not study.supports
     ]
@@ -353,11 +353,7 @@ def _moved(study: Study) -> list[tuple[str, str]]:
         (one.face, axis) for one in study.supports if one.stiffness is None and one.whole for axis in one.directions
     ]
     return [
-        (
-            f"load[{k}].displacement[{n}].displacement",
-            f"load {load.name!r} moves the face {one.face!r} along {axis}, in which no rigid support holds it; give it "
-            "a [[support]] without stiffness in that direction, or a force in place of the displacement",
-        )
+        (f"load[{k}].displacement[{n}].displacement", not_held(load.name, one.face, axis))
         for k, load in enumerate(study.load_cases, 1)
         for n, one in enumerate(load.displacements, 1)
         for axis, size in zip("xyz", one.displacement, strict=True)

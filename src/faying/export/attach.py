@@ -223,13 +223,8 @@ def attach(
             "some of them are negative"
         )
     if pairs.lumped:
-        at_nodes = _turning(mesh.points[pairs.first], pairs.area * law.stiffness(used)[0])
         exact = _turning(interface.positions, interface.weights * law.stiffness(at_points)[0])
-        if at_nodes > (1 + STIFFER) * exact:
-            notes.append(
-                f"the mesh of the faces is coarse: springs node by node resist a turn of the joint by "
-                f"{percent(at_nodes / max(exact, 1e-300) - 1)} more than the joint does; --coupling faces is exact"
-            )
+        notes += _coarse(_turning(mesh.points[pairs.first], pairs.own(pairs.stiffness)[:, 0]), exact)
     bent = spec.form not in (None, Form())
     if bent:
         notes.append("between bent faces a pressure has no one closure: the deck has no contact table, only springs")
@@ -373,6 +368,15 @@ def _pairs(interface: Interface, law: JointLaw, pressure: Array, coupling: str) 
 def _turning(places: Array, k_n: Array) -> float:
     """Sum of normal stiffness [N/m] times squared distance from its own middle [N m], of places (n, 3) [m]."""
     return float(k_n @ ((places - k_n @ places / max(k_n.sum(), 1e-300)) ** 2).sum(axis=1))
+
+
+def _coarse(at_nodes: float, exact: float) -> Iterator[str]:
+    """How much more springs at nodes resist a turn than a joint does, where that is worth a note."""
+    if at_nodes > (1 + STIFFER) * exact:
+        yield (
+            "the mesh of the faces is coarse: springs node by node resist a turn of the joint by "
+            f"{percent(at_nodes / max(exact, 1e-300) - 1)} more than the joint does; --coupling faces is exact"
+        )
 
 
 def _flags(law: JointLaw, pressure: Array, area: Array) -> list[str]:

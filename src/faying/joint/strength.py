@@ -136,11 +136,11 @@ def seat_limit(structure: Bolted, face: str) -> tuple[float, str] | None:
 
 def _seats(structure: Bolted, fitted: FittedBolt | BoltPlace, force: float) -> list[Note]:
     out = []
-    for face, seat in zip(fitted.bolt.faces, fitted.pressed, strict=False):  # a screw presses the first alone
-        pressure, limit = force / seat.area, seat_limit(structure, face)
+    for seat in fitted.pressed:
+        pressure, limit = force / seat.area, seat_limit(structure, seat.face)
         if limit is not None and pressure > limit[0]:
             text = (
-                f"bolt {fitted.bolt.name!r}: {show(force, 'N')} press its seat on {face!r} with "
+                f"bolt {fitted.bolt.name!r}: {show(force, 'N')} press its seat on {seat.face!r} with "
                 f"{show(pressure, 'Pa')}, above the {limit[1]} of the part, {show(limit[0], 'Pa')}; "
                 "the part stays elastic here. Lower the preload, widen the seat, or give the part's bearing_limit"
             )

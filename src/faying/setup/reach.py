@@ -99,7 +99,7 @@ def _weights(
     """Integral of the pressure of a bolt over each joint, 1 at its hole [m2] (j,), and over its cone."""
     if isinstance(place, SolidPlace) or not place.pressed[0].is_ring:
         return np.zeros(len(pairs)), 0.0
-    hole, seat = place.pressed[0].inner, place.pressed[0].outer
+    hole, seat = place.pressed[0].diameters
     near = min(depth, place.length - depth)
     wide = seat + 2 * near * max(cone_angle(place.length, seat, WIDE * seat), 0.0)
     step = (wide - hole) / 2 / RADII
@@ -271,7 +271,7 @@ def _rim(sketch: Sketch, one: Share, mine: float) -> tuple[float, float] | None:
     place = one.place
     if isinstance(place, SolidPlace) or not place.pressed[0].is_ring:
         return None
-    hole, seat = place.pressed[0].inner, place.pressed[0].outer
+    hole, seat = place.pressed[0].diameters
     near = min(one.depth, place.length - one.depth)
     outer = max(2 * float(np.sqrt(mine / pi + (hole / 2) ** 2)), seat) if one.share == 1 else WIDE * seat
     try:

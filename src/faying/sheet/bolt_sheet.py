@@ -356,7 +356,7 @@ def _seats(case: Case, index: int, numbers: BoltNumbers, force: float, choice: B
     head = pressed[0] if pressed and pressed[0].is_ring else None
     thread = fitted.thread if isinstance(fitted, FittedBolt) else None
     seat = "bolt.seat, of a bolt that is not in the mesh"
-    found = [seat_limit(case.structure, face) for face, _ in zip(fitted.bolt.faces, pressed, strict=False)]
+    found = [seat_limit(case.structure, one.face) for one in pressed]
     softest = min((one for one in found if one is not None), key=lambda one: one[0], default=(None, "bearing limit"))
     return [
         _quantity("A_p", "area of the smaller seat", "m^2", area, seat),

@@ -100,6 +100,14 @@ class Displacement:
         object.__setattr__(self, "displacement", vector(displacement, "m", f"displacement of {face!r}"))
 
 
+def not_held(load: str, face: str, axis: str) -> str:
+    """That a load moves a face along an axis in which no rigid support holds it."""
+    return (
+        f"load {load!r} moves the face {face!r} along {axis}, in which no rigid support holds it; give it a "
+        "[[support]] without stiffness in that direction, or a force in place of the displacement"
+    )
+
+
 @checked_call
 @dataclass(frozen=True, init=False)
 class Load:

@@ -174,8 +174,7 @@ def _planned_bolts(study: "Study", mesh: Mesh) -> tuple[SceneBolt, ...]:
     for bolt in study.bolts:
         if isinstance(bolt, Bolt):
             fitted = bolt.fitted(mesh)
-            head_seat = fitted.pressed[0]
-            diameter, head = drawn(bolt.diameter or np.nan, (head_seat.inner, head_seat.outer), mesh.size)
+            diameter, head = drawn(bolt.diameter or np.nan, fitted.pressed[0].diameters, mesh.size)
             out.append(SceneBolt(name=bolt.name, seats=fitted.seats, diameter=diameter, head=head))
         else:
             seats = np.stack([face_centre(mesh.points, mesh.face(face))[0] for face in bolt.faces])

@@ -149,18 +149,12 @@ def _forces(table: Table, bolt: Bolt | SolidBolt | None, thread: Thread | None) 
         if diameter is None:
             table.faults.add(f"{table.where}: a torque gives a preload only with the thread's diameter; add diameter")
             return ()
-        given = dict(zip(FRICTIONS, frictions, strict=True)) | {"nut_factor": factor, "bearing": _bearing(bolt)}
+        ring = bolt.stated_ring if isinstance(bolt, Bolt) else None
+        bearing = None if ring is None else sum(ring) / 2
+        given = dict(zip(FRICTIONS, frictions, strict=True)) | {"nut_factor": factor, "bearing": bearing}
         pitch = pitch if thread is None else thread.pitch
         forces = table.made(lambda: tuple(torque_to_preload(t, diameter, pitch=pitch, **given) for t in torques))
     return forces or ()
-
-
-def _bearing(bolt: Bolt | SolidBolt | None) -> float | None:
-    """Mean diameter [m] of the seat or the washer under a head; None where neither is given."""
-    if not isinstance(bolt, Bolt):
-        return None
-    rings = [bolt.seat] if bolt.seat is not None else [(washer.inner, washer.outer) for washer in bolt.washers]
-    return sum(rings[0]) / 2 if rings else None
 
 
 def _tightened(unit: str, example: str, says: str) -> Key:
