@@ -3,11 +3,12 @@
 import json
 import os
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.io import mmread
-from scipy.linalg import eigh
+from scipy.linalg import eigh, expm, sqrtm
 from scipy.sparse import load_npz
 
 import faying
@@ -184,6 +185,88 @@ def test_abaqus_is_read_back(found, full, tmp_path):
     assert "*MATRIX ASSEMBLE,STIFFNESS=KJ,MASS=MJ,STRUCTURAL DAMPING=SJ" in text
     nodes = text.split("*NODE\n")[1].split("*")[0].splitlines()
     assert {int(line.split(",")[0]) for line in nodes} == {node for node, _ in place}
+
+
+def test_fmu_is_run_by_fmpy(tmp_path):
+    """Answer to a force of one step, in time by exponentials of the matrices, and its FRFs.
+
+    The damping matrix is the root of M^-1 K, found without its modes.
+    """
+    fmpy = pytest.importorskip("fmpy", reason="FMPy, of the group dev, is not installed")
+    from fmpy.fmi2 import FMU2Slave
+    from fmpy.validation import validate_fmu
+
+    found = superelement(ROOT / "examples" / "bracket" / "study.toml", ["bracket.top"], up_to="1 kHz")
+    loss = 0.05  # so large that the answer has ended after half a second
+    (file,) = replace(found, loss=loss * found.stiffness).write("fmu", tmp_path / "out")
+    assert validate_fmu(str(file)) == []
+    told = fmpy.read_model_description(file)
+    number = {variable.name: variable.valueReference for variable in told.modelVariables}
+    model = told.coSimulation.modelIdentifier
+    unit = FMU2Slave(
+        guid=told.guid,
+        unzipDirectory=fmpy.extract(file, tmp_path / "unzipped"),
+        modelIdentifier=model,
+        instanceName="a",
+    )
+    unit.instantiate()
+    unit.setupExperiment(startTime=0.0)
+    unit.enterInitializationMode()
+    unit.exitInitializationMode()
+    h, steps, ways = 2e-5, 25_000, ("x", "y", "z", "rx", "ry", "rz")
+    out = [number[f"bracket_top.{what}.{way}"] for what in ("displacement", "velocity", "acceleration") for way in ways]
+    motion = np.zeros((steps + 1, 18))
+    push = [number["bracket_top.force.z"]]
+    unit.setReal(push, [1 / h])
+    for k in range(steps):
+        unit.doStep(k * h, h)
+        unit.setReal(push, [0.0])
+        motion[k + 1] = unit.getReal(out)
+    unit.terminate()
+    unit.freeInstance()
+    assert np.abs(motion[-1, :6]).max() < 1e-4 * np.abs(motion[:, :6]).max()
+    K, M = found.stiffness, found.mass
+    C, time = loss * M @ sqrtm(np.linalg.solve(M, K)).real, h * np.arange(steps + 1)
+    n = len(K)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+    state = np.linalg.solve(A, expm(A * h) - np.eye(2 * n)) @ np.append(np.zeros(n), np.linalg.inv(M)[:, 2] / h)
+    for k in (2, 100, 3000):
+        there = expm(A * h * (k - 1)) @ state
+        then = np.concatenate([there[:6], there[n : n + 6], (A @ there)[n : n + 6]])
+        scale = np.abs(motion).max(axis=0).reshape(3, 6).max(axis=1).repeat(6)
+        assert np.abs((motion[k] - then) / scale).max() < 1e-7
+    for frequency in (50.0, found.frequencies[0], 200.0, found.frequencies[1], 700.0):
+        w = 2 * np.pi * frequency
+        true = np.linalg.inv(K + 1j * w * C - w**2 * M)[:6, 2]
+        pulse = np.sinc(frequency * h) * np.exp(-0.5j * w * h)  # of one step, its integral 1
+        seen = h * np.exp(-1j * w * time) @ motion[:, :6] / pulse
+        assert np.abs(seen - true).max() < 1e-4 * np.abs(true).max()
+
+
+def test_a_free_structure_as_fmu_flies_as_its_mass_does(found, full, tmp_path):
+    """A constant force through its centre: F t^2 / 2 m, in 50 steps or in 500; its modes move by next to nothing."""
+    fmpy = pytest.importorskip("fmpy", reason="FMPy, of the group dev, is not installed")
+    (file,) = found.write("fmu", tmp_path)
+    for steps in (50, 500):
+        rows = fmpy.simulate_fmu(
+            str(file),
+            stop_time=0.1,
+            step_size=0.1 / steps,
+            output_interval=0.1 / steps,
+            start_values={"upper_seat.force.z": 10.0},
+            output=["upper_seat.displacement.z", "upper_seat.velocity.z"],
+        )
+        _, moved, fast = rows[-1]
+        assert moved == pytest.approx(10.0 * 0.1**2 / 2 / full[1], rel=1e-5)
+        assert fast == pytest.approx(10.0 * 0.1 / full[1], rel=1e-3)
+
+
+def test_an_fmu_has_no_units_of_its_own(found, tmp_path):
+    with pytest.raises(faying.InputError, match="fmu is written in SI units; leave out the units mm and N"):
+        found.write("fmu", tmp_path, unit="mm")
+    with pytest.raises(faying.InputError, match=r"not told apart in an FMU: \['a_b', 'a_b', 'node_7'\]"):
+        replace(found, names=("a.b", "a b", "node 7")).write("fmu", tmp_path)
+    assert not list(tmp_path.iterdir())
 
 
 def test_the_command(file, tmp_path, capsys):

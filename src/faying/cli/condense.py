@@ -8,7 +8,7 @@ import click
 from faying import units
 from faying.cli.options import PATH, show
 from faying.cli.progress import Form, Shown, progress_options
-from faying.decks.programs import CONDENSED, REDUCED
+from faying.decks.programs import CONDENSED, IN_SI, REDUCED
 from faying.errors import InputError
 from faying.text import toml
 from faying.units import load_text
@@ -33,7 +33,7 @@ NUMBER = click.IntRange(1, 99_999_999)  # eight digits, the field of a bulk data
     help="Of the superelement, once for each: a face by its name or selector, as in a study, or a point.",
 )
 @click.option("--up-to", metavar="FREQUENCY", help="Of the superelement: where its modes end (default: the study's).")
-@click.option("--to", "solver", type=click.Choice(sorted({*CONDENSED, *REDUCED, "npz"})), help="What to write for.")
+@click.option("--to", "solver", type=click.Choice(sorted({*CONDENSED, *REDUCED, *IN_SI})), help="What to write for.")
 @click.option("--unit", help='Unit of length of that model, such as "mm".')
 @click.option("--force-unit", default="N", show_default=True, help="Unit of force of that model.")
 @click.option("--node-a", type=NUMBER, default=900001, show_default=True, help="Number of the first point's node.")
@@ -67,7 +67,7 @@ def command(
     from faying.output.table import text
     from faying.study import Study
 
-    if solver not in (None, "npz") and unit is None:
+    if solver not in (None, *IN_SI) and unit is None:
         raise InputError('--to needs --unit, the unit of length of that model, such as "mm"')
     if whole and (joint or point_a or point_b):
         raise InputError("--joint, --point-a and --point-b are of one joint; a superelement has --interface")

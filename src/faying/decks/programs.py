@@ -8,6 +8,7 @@ from faying.file_kinds import Use, taken
 
 CONDENSED = ("mapdl", "abaqus", "nastran")  # write a condensed joint: `condensed(deck) -> {file: text}`
 REDUCED = ("abaqus", "nastran", "market")  # write a superelement, by the same function
+IN_SI = ("npz", "fmu")  # write a superelement, too, without units of one's own
 SOLVERS = (*CONDENSED, "calculix", "aster")  # write a joint: `decks(deck) -> {file: text}`
 
 

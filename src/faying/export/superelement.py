@@ -11,8 +11,10 @@ import numpy as np
 from faying.case.case import Case, Progress
 from faying.checks import number
 from faying.decks.deck import CondensedDeck, UnitSystem, write_condensed
+from faying.decks.programs import IN_SI
 from faying.errors import InputError
 from faying.export.condense import under_preload
+from faying.export.fmu import write_fmu
 from faying.export.matrix_modes import Assembled
 from faying.fe.attach import mean_motion
 from faying.fe.sides import face_centre
@@ -85,7 +87,8 @@ class Superelement(Summary):
         """Write the superelement for another program.
 
         Args:
-            program: "nastran", "abaqus", "market" (Matrix Market), or "npz" (SciPy, in SI units).
+            program: "nastran", "abaqus", "market" (Matrix Market), "npz" (SciPy), or "fmu" (FMI 2.0, co-simulation);
+                the last two are in SI units.
             folder: Where the files go; it is made where it does not exist.
             unit, force_unit: Units of length and force of that program's model.
             node: Number of the first interface's node; those of the others and of the modes follow.
@@ -98,6 +101,14 @@ class Superelement(Summary):
         """
         if node < 1:
             raise InputError(f"node {node}: give a number from 1 on")
+        if program in IN_SI and (unit, force_unit) != ("m", "N"):
+            raise InputError(f"{program} is written in SI units; leave out the units {unit} and {force_unit}")
+        if program == "fmu":
+            lowest = float(self.frequencies.min(initial=self.up_to))
+            title = f"{self.study} at {load_text(self.load)}"
+            return write_fmu(
+                Path(folder), title, self.names, self.dofs, self.stiffness, self.mass, self.loss, lowest=lowest
+            )
         entries = self.dofs + np.array([node - 1, 0])
         if program == "npz":
             return Assembled(
