@@ -101,6 +101,93 @@ def test_a_run_and_a_prediction_have_one_interval():
         assert np.all(np.abs(ours - theirs) < 0.1 * (stated.high - stated.low))
 
 
+OF_PARTS = """title = "parts that are not as the study has them"
+[geometry]
+mesh = "MESH"
+unit = "mm"
+[part.block_a]
+material = "45 steel"
+TEST
+[part.block_b]
+material = "45 steel"
+[surface]
+D = 2.39
+G = "1.53e-10 m"
+scan_area = "16 mm^2"
+[[joint]]
+name = "joint"
+faces = ["FACE_A", "FACE_B"]
+tangential = 0.6
+[joint.form]
+flat = true
+[[bolt]]
+name = "b"
+faces = ["END_B", "END_A"]
+preload = "3 kN"
+[modes]
+count = 5
+levels = []
+[uncertain]
+only = true
+structure = "0.1 %"
+discrepancy = "0.1 %"
+"""
+
+
+def of_parts(folder, lines, test=""):
+    """The two blocks of which little scatters but what these lines list; test: of the first one."""
+    mesh = (EXAMPLES / "two-blocks" / "model.inp").as_posix()
+    file = folder / "study.toml"
+    file.write_text(OF_PARTS.replace("MESH", mesh).replace("TEST", test) + lines)
+    return Study.read(file)
+
+
+@pytest.mark.parametrize(
+    ("lines", "test"),
+    [
+        ('E = "220 GPa +- 2 GPa"', ""),
+        ('density = "7000 kg/m^3 +- 50 kg/m^3"', ""),
+        ('part.block_a.stiffness = "1.1 +- 0.02"', ""),
+        ('part.block_a.mass = "0.9 +- 0.02"\nE = "205 GPa +- 2 GPa"', ""),
+        ('bolt.preload = "1 kN +- 0.05 kN"', ""),
+        ('joint.tangential = "0.6 +- 0.01"\nE = "220 GPa +- 2 GPa"', 'mass = "0.2808 kg"'),
+        ('joint.tangential = "0.6 +- 0.01"\npart.block_a.stiffness = "1.05 +- 0.01"', 'mass = "0.29 kg"'),
+    ],
+)
+def test_what_is_listed_off_the_study_has_one_interval(lines, test, tmp_path):
+    """Its median is that of what is listed; 256 samples leave a twentieth of the width in an end."""
+    study = of_parts(tmp_path, lines, test)
+    drawn = faying.predict(study, samples=256).quantiles((0.05, 0.5, 0.95)).frequencies
+    stated = run(study).interval
+    for ours, theirs in zip((stated.low, stated.best, stated.high), drawn, strict=True):
+        assert np.all(np.abs(ours - theirs) < 0.1 * (stated.high - stated.low))
+
+
+def test_the_test_of_a_part_is_not_counted_twice(tmp_path):
+    """A weight that agrees with the model says nothing of the stiffness that is listed, and the listed mass little."""
+    plain = run(of_parts(tmp_path, 'E = "220 GPa +- 2 GPa"')).interval
+    weighed = run(of_parts(tmp_path, 'E = "220 GPa +- 2 GPa"', 'mass = "0.2808 kg"')).interval
+    np.testing.assert_allclose(weighed.best, plain.best, rtol=2e-4)
+    once = run(of_parts(tmp_path, "", 'mass = "0.29 kg"')).interval
+    again = run(of_parts(tmp_path, 'part.block_a.mass = "1.02 +- 0.02"', 'mass = "0.29 kg"')).interval
+    np.testing.assert_allclose(again.best, once.best, rtol=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("lines", "twice"),
+    [
+        ('bolt.factor = "1 +- 0.1"\npreload = {scatter = "5 %"}', "bolt.factor scatters already by bolt.b.factor"),
+        ('bolt.preload = "3 kN +- 0.1 kN"\nbolt.factor = "1 +- 0.1"', "bolt.preload scatters already by bolt.factor"),
+        ('bolt.b.preload = "3 kN +- 0.1 kN"\nbolt.factor = "1 +- 0.1"', "bolt.b.preload scatters already by bolt.fac"),
+        ('bolt.preload = "3 kN +- 0.1 kN"\npreload = {scatter = "5 %"}', "bolt.preload scatters already by bolt.b.fac"),
+        ('friction = "0.1 to 0.2"\njoint.joint.friction = "0.1 to 0.3"', "joint.friction scatters already by joint.jo"),
+    ],
+)
+def test_what_scatters_by_two_lines_is_refused(lines, twice, tmp_path):
+    with pytest.raises(InputError, match=twice):
+        of_parts(tmp_path, lines)
+
+
 def test_shares_of_stiff_modes_are_those_of_the_parts(found):
     """A mode of the parts alone goes with the root of E and of 1/density: 2 % and .5 %, so 16 to 1 in variance."""
     shares, error = found.shares()

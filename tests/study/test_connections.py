@@ -238,6 +238,24 @@ def test_a_number_of_one_owner_counts_above_that_of_all(folder):
 
 
 @pytest.mark.parametrize(
+    ("values", "force"),
+    [
+        ({"bolt.factor": 0.5, "bolt.preload": 2e3}, 1e3),
+        ({"bolt.factor": 0.5, "bolt.BOLT.preload": 2e3}, 1e3),
+        ({"bolt.BOLT.factor": 0.5, "bolt.preload": 2e3}, 1e3),
+        ({"bolt.factor": 0.5, "bolt.BOLT.factor": 0.25}, 1e3),  # of the two the one that names its owner
+    ],
+)
+def test_a_factor_on_a_preload_is_on_that_which_is_given_with_it(values, force, folder):
+    """An axis of factors before one of preloads changed no answer of a sweep."""
+    plan = study(folder, bolt=[BOLT | SHANK | {"preload": "4 kN"}])
+    point = StudyVariant(study=plan, surfaces=(), forces=np.array([4e3]))
+    named = {key.replace("BOLT", plan.bolts[0].name): value for key, value in values.items()}
+    for keys in (list(named), list(reversed(named))):
+        assert point.with_values({key: named[key] for key in keys}).forces.tolist() == [force]
+
+
+@pytest.mark.parametrize(
     ("bolt", "text"),
     [
         ({}, r'preload is missing; give a force such as "12 kN", or torque = "20 N m"'),

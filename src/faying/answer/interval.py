@@ -187,8 +187,8 @@ def intervals(
     draws = Draws.of(case, known)
     plain = ChangedCase.nothing(case)
     waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
-    laws, (_, factor, _) = _laws(case, known), _preload_factors(case, known)
-    medians = [replace(one, laws=laws, factor=factor) for one in waves or [plain]]
+    laws, (factors, _) = _laws(case, known), _preload_factors(case, known)
+    medians = [replace(one, laws=laws, factor=factors) for one in waves or [plain]]
     ends = _ends(case, known, medians[0])
     changes = [*waves, *medians, *(one for pair in ends.values() for one in pair)]
     # modes of a draw under the medians are those of the draw, and those of the ends are those of the first median
@@ -227,9 +227,9 @@ def _ends(case: Case, known: Known, middle: ChangedCase) -> dict[str, tuple[Chan
         out["law"] = replace(middle, laws=_laws(case, known, 0)), replace(middle, laws=_laws(case, known, 2))
     if any(of_each(case, known, "tangential")):
         out["k_t/k_n"] = replace(middle, laws=_laws(case, known, 1, 0)), replace(middle, laws=_laws(case, known, 1, 2))
-    least, _, most = _preload_factors(case, known)
+    factors, (least, most) = _preload_factors(case, known)
     if len(case.loads) == 1 and least < most:
-        out["preload"] = replace(middle, factor=least), replace(middle, factor=most)
+        out["preload"] = replace(middle, factor=least * factors), replace(middle, factor=most * factors)
     return out
 
 
@@ -315,9 +315,9 @@ def _combined(
         found["waves"] = SCORE * np.sqrt(of_group(logs.var(axis=0, ddof=1)) + split) * ONE_EACH_WAY
     if case.study.assumes_scatter and all(state.ends and "scan" in state.ends for state in states):
         found["scan"] = np.log(np.stack([(state.ends or {})["scan"] for state in states], axis=1) / f)
-    if len(states) > 1 and np.ptp(factors := _preload_factors(case, known)):
+    if len(states) > 1 and np.ptp(ends := _preload_factors(case, known)[1]):
         curve = about if isinstance(about, np.ndarray) else f
-        found["preload"] = _by_preload(case.loads, curve, factors)
+        found["preload"] = _by_preload(case.loads, curve, ends)
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):
         found[name] = SCORE * sd * ONE_EACH_WAY * np.ones(f.shape)
     if parts is not None:
@@ -328,18 +328,18 @@ def _combined(
     return Interval.about(np.exp(of_group(np.log(f) + middle + moved)), named, of_group(moved))
 
 
-def _preload_factors(case: Case, known: Known) -> tuple[float, float, float]:
-    """5, 50 and 95 % of a common factor on the preload of all bolts; of bolts that scatter apart the widest ends."""
-    ends = np.stack([force_factors(known, bolt.name, LEVELS) for bolt in case.study.bolts])
-    return float(ends[:, 0].min()), float(np.median(ends[:, 1])), float(ends[:, 2].max())
+def _preload_factors(case: Case, known: Known) -> tuple[Array, tuple[float, float]]:
+    """Median factors on the preloads (b,), and 5 and 95 % of one on all of these: the widest where they differ."""
+    low, middle, high = np.stack([force_factors(known, case.study, k, LEVELS) for k in range(len(case.study.bolts))]).T
+    return middle, (float((low / middle).min()), float((high / middle).max()))
 
 
-def _by_preload(loads: Array, frequencies: Array, factors: tuple[float, float, float]) -> Array:
+def _by_preload(loads: Array, frequencies: Array, factors: tuple[float, float]) -> Array:
     """Offsets of ln f (2, loads, m) by both ends from the median: linear in ln F between loads and beyond them."""
     x, y = np.log(loads), np.log(frequencies)
     out = []
-    for end in (0, 2):
-        at = x + np.log(factors[end] / factors[1])
+    for factor in factors:
+        at = x + np.log(factor)
         right = np.clip(np.searchsorted(x, at), 1, len(x) - 1)
         share = (at - x[right - 1]) / (x[right] - x[right - 1])
         out.append((1 - share)[:, None] * y[right - 1] + share[:, None] * y[right] - y)

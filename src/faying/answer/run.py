@@ -21,7 +21,7 @@ from faying.case.engine import engine_of
 from faying.case.level_damping import level_notes
 from faying.case.mesh_error import mesh_error, mesh_notes
 from faying.case.provenance import provenance
-from faying.case.scatter import IN_INTERVALS
+from faying.case.scatter import in_intervals
 from faying.case.solve import LoadedCase, released, solve
 from faying.errors import NotConverged
 from faying.fe.stress import at_outline, greatest_stresses, part_stresses
@@ -35,7 +35,6 @@ from faying.result.fields import declared
 from faying.result.groups import BondedAboveRange, Levels
 from faying.result.vibration import VibrationResponse
 from faying.service.vibration import vibrations_of
-from faying.study.keys.varied import number_of
 from faying.study.study import Study
 from faying.text import listed
 from faying.typing import Array, Index
@@ -376,7 +375,7 @@ def _closing_notes(study: Study, rigid: Array, first: float) -> Iterator[Note]:
     if study.uncertain is not None:
         within = [column.key for column in study.uncertain.inputs if column.within]
         taken = f"; of {', '.join(within)} the median is taken" if within else ""
-        left = [one.key for one in study.uncertain.inputs if number_of(one.key).name not in IN_INTERVALS]
+        left = [one.key for one in study.uncertain.inputs if not in_intervals(one.key)]
         but = f", but for {listed(left)}" * bool(left)
         ends = f"; the intervals have what [uncertain] says{but}" * study.modes.intervals
         text = (

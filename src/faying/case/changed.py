@@ -20,11 +20,11 @@ TOLERANCE = 1e-4
 
 @dataclass(frozen=True, kw_only=True)
 class ChangedCase:
-    """A case with other laws, gaps [m] (q,) and forces on all joints and bolts; factor: on the force of each bolt."""
+    """A case with other laws and gaps [m] (q,) of all joints; factor: on the force of each bolt (b,), or of all."""
 
     laws: Sequence[JointLaw]
     gaps: Sequence[Array]
-    factor: float = 1.0
+    factor: float | Array = 1.0
 
     @classmethod
     def nothing(cls, case: Case) -> "ChangedCase":

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.case.scatter import DENSITY_SD, ONE_EACH_WAY, SCORE, mode_sd, structure_sd
+from faying.case.scatter import DENSITY_SD, LEVELS, ONE_EACH_WAY, SCORE, mode_sd, of_parts, stated, structure_sd
 from faying.fe.surplus import Surplus
 from faying.joint.assembled_parts import unknowns_of
 from faying.joint.modal import ModalProblem, ModesChoice
@@ -26,6 +26,7 @@ from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.numerics.follow import partners
 from faying.study.keys.material import PartTestChoice
+from faying.study.keys.varied import number_of
 from faying.study.study import Study
 from faying.typing import Array, Index
 
@@ -35,6 +36,7 @@ LEAST_SD = 3e-3  # of ln f of each mode: sensors and cables, and how far a part 
 FARTHEST = 4.0  # standard deviations beyond which a measured frequency is that of another mode
 MODES_EACH, SPARE_MODES = 2, 10  # of the model for each measured one, and in all: a test misses what it does not excite
 TINY = 1e-9  # likeness above none
+AS_MODELLED = np.zeros(2)  # ln of both factors
 SHIFTS = np.linspace(-3, 3, 61)  # common factors that are tried, in standard deviations of their prior
 
 
@@ -56,14 +58,21 @@ class PartFactors:
 
     @classmethod
     def of(
-        cls, ratios: Array, errors: Array, *, prior: tuple[float, float], mode: float, mass: float | None = None
+        cls,
+        ratios: Array,
+        errors: Array,
+        *,
+        prior: tuple[float, float],
+        mode: float,
+        mass: float | None = None,
+        mean: Array = AS_MODELLED,
     ) -> "PartFactors":
         """Both factors in closed form; the scatter of the modes counts as one of the size of the prior, and they do.
 
         Args:
             ratios: ln of measured over computed frequency (t,).
             errors: Standard deviation of ln f_i0 by the mesh (t,).
-            prior: Standard deviations of ln s_E and ln s_m.
+            prior, mean: Standard deviations of ln s_E and ln s_m before the test, and their means (2,).
             mode: Standard deviation of ln f of a mode by itself, before the test.
             mass: ln of the weighed over the computed mass; None where it was not weighed.
 
@@ -71,14 +80,15 @@ class PartFactors:
             Normal prior and likelihood: A. Gelman et al., Bayesian Data Analysis, 3rd ed., sections 2.6 and 14.8.
         """
         rest = ratios - ratios.mean() if len(ratios) else ratios
+        before = np.diag(np.array(prior) ** -2.0)
         scatter = max(LEAST_SD, float(np.sqrt((mode**2 + rest @ rest) / max(len(ratios), 1))))
         rows = np.tile([0.5, -0.5], (len(ratios), 1))
         seen, precision = ratios, 1 / (scatter**2 + errors**2)
         if mass is not None:
             rows, seen = np.vstack([rows, [0.0, 1.0]]), np.append(ratios, mass)
             precision = np.append(precision, BALANCE_SD**-2)
-        covariance = np.linalg.inv(np.diag(np.array(prior) ** -2.0) + (rows.T * precision) @ rows)
-        mean = covariance @ (rows.T @ (precision * seen))
+        covariance = np.linalg.inv(before + (rows.T * precision) @ rows)
+        mean = covariance @ (before @ mean + rows.T @ (precision * seen))
         return cls(mean=mean, covariance=covariance, scatter=scatter, count=len(ratios))
 
 
@@ -106,10 +116,11 @@ class PartAlone:
         errors = np.zeros(count) if surplus is None else surplus.error(found.shapes[:, elastic], squares) / 2
         return found.frequencies[elastic], errors
 
-    def factors(self, structure: float, mode: float) -> PartFactors:
+    def factors(self, mean: Array, prior: tuple[float, float], mode: float) -> PartFactors:
         """What the test says.
 
-        structure, mode: standard deviations of ln f, common to all modes and of each by itself, before the test.
+        mean, prior: of ln s_E and ln s_m before the test, and their standard deviations; mode: that of ln f of each
+        mode by itself.
         """
         measured = self.measured
         weighed = None if self.test.mass is None else float(np.log(self.test.mass / self.structure.mass))
@@ -118,9 +129,10 @@ class PartAlone:
             count = min(MODES_EACH * len(measured) + SPARE_MODES, self.structure.mesh.unknowns // 4)
             computed, errors = self.modes(count)
             ratios = np.log(measured[:, None] / computed) + errors  # a finer mesh has it lower by its error
-            pairs = same_modes(ratios + (weighed or 0.0) / 2, structure, mode)
+            common = (mean[0] - (mean[1] if weighed is None else weighed)) / 2
+            pairs = same_modes(ratios - common, prior[0] / 2, mode)
             ratios, errors = ratios[pairs], errors[pairs[1]]
-        return PartFactors.of(ratios, errors / SCORE, prior=(2 * structure, DENSITY_SD), mode=mode, mass=weighed)
+        return PartFactors.of(ratios, errors / SCORE, prior=prior, mode=mode, mass=weighed, mean=mean)
 
 
 def same_modes(ratios: Array, structure: float, mode: float) -> tuple[Index, Index]:
@@ -146,19 +158,22 @@ def same_modes(ratios: Array, structure: float, mode: float) -> tuple[Index, Ind
 
 @dataclass(frozen=True, kw_only=True)
 class KnownParts:
-    """Parts of a structure that were weighed or rung alone, and what each mode has of them.
+    """Parts of a structure that were weighed or rung alone, or of which [uncertain] lists something.
 
     Args:
         study: Which has their tests.
-        parts, factors: these (p), and what their tests say.
-        strain, kinetic: share of the energy of each mode in each of them (p, loads, m) [-].
-        others: share of the strain energy in parts without a test (loads, m) [-].
+        parts, factors: those with a test (p), and what their tests say.
+        moved, spread: what those without move ln f by as they are listed, and its standard deviation (loads, m) [-].
+        strain, kinetic: share of the energy of each mode in each part with a test (p, loads, m) [-].
+        others: share of the strain energy in parts without a test (loads, m) [-]; 1 where none has one.
         all_rung: whether every part has measured modes.
     """
 
     study: Study
     parts: tuple[PartAlone, ...]
     factors: tuple[PartFactors, ...]
+    moved: Array
+    spread: Array
     strain: Array
     kinetic: Array
     others: Array
@@ -166,24 +181,38 @@ class KnownParts:
 
     @classmethod
     def of(cls, study: Study, structure: Structure, modes: Sequence[tuple[Array, Array]]) -> "KnownParts | None":
-        """Those of a study; None where no part has a test.
+        """Those of a study; None where no part has a test, and [uncertain] lists nothing of parts.
 
         modes: elastic modes under each load, their frequencies [Hz] (m,) and mass-normalised shapes (n, m).
         """
-        if not study.part_tests:
+        tests = study.part_tests
+        names = [*tests, *(name for name in structure.mesh.parts if name not in tests)]
+        means, roots = _listed(study, names)
+        names = [name for k, name in enumerate(names) if name in tests or means[k].any() or roots[k].any()]
+        if not names:
             return None
-        tests = study.part_tests.items()
-        parts = tuple(PartAlone(name=name, structure=structure.alone(name), test=test.read()) for name, test in tests)
-        priors = structure_sd(study.uncertain), min(mode_sd(study.uncertain), PART_SD)
-        energies = [energy_shares(structure, parts, *of_load) for of_load in modes]
+        parts = [
+            PartAlone(name=name, structure=structure.alone(name), test=tests.get(name, PartTestChoice()).read())
+            for name in names
+        ]
+        energies = [energy_shares(structure, parts, len(tests), *of_load) for of_load in modes]
         strain, kinetic, others = (np.stack(one) for one in zip(*energies, strict=True))
+        by_factor = np.stack([strain, -kinetic], axis=-1).swapaxes(0, 1) / 2
+        own, factors = min(mode_sd(study.uncertain), PART_SD), list[PartFactors]()
+        for part, mean, root in zip(parts[: len(tests)], means, roots, strict=False):
+            sd = np.linalg.norm(root, axis=1)
+            prior = float(np.hypot(2 * structure_sd(study.uncertain), sd[0])), float(sd[1]) or DENSITY_SD
+            factors.append(part.factors(mean, prior, own))
+        rest = slice(len(tests), len(parts))
         return cls(
             study=study,
-            parts=parts,
-            factors=tuple(part.factors(*priors) for part in parts),
-            strain=strain.swapaxes(0, 1),
-            kinetic=kinetic.swapaxes(0, 1),
-            others=others,
+            parts=tuple(parts[: len(tests)]),
+            factors=tuple(factors),
+            moved=np.einsum("plmi,pi->lm", by_factor[rest], means[rest]),
+            spread=np.linalg.norm(np.einsum("plmi,pik->lmk", by_factor[rest], roots[rest]), axis=-1),
+            strain=strain.swapaxes(0, 1)[: len(tests)],
+            kinetic=kinetic.swapaxes(0, 1)[: len(tests)],
+            others=others if tests else np.ones_like(others),
             all_rung=sum(len(part.measured) > 0 for part in parts) == len(structure.mesh.parts),
         )
 
@@ -196,8 +225,8 @@ class KnownParts:
         structure, mode = offsets["structure"], offsets["mode"]
         by_factor = np.stack([self.strain, -self.kinetic], axis=-1) / 2
         pairs = list(zip(by_factor, self.factors, strict=True))
-        middle = sum(by @ one.mean for by, one in pairs)
-        variance = sum(np.einsum("lmi,ij,lmj->lm", by, one.covariance, by) for by, one in pairs)
+        middle = self.moved + sum(by @ one.mean for by, one in pairs)
+        variance = self.spread**2 + sum(np.einsum("lmi,ij,lmj->lm", by, one.covariance, by) for by, one in pairs)
         own = sum((share * one.scatter) ** 2 for share, one in zip(self.strain, self.factors, strict=True))
         rest = np.clip(1 - self.strain.sum(axis=0), 0.0, 1.0)
         found = {name: one for name, one in offsets.items() if name != "structure"}
@@ -239,12 +268,32 @@ def _added(prior: Array, variance: Any) -> Array:
     return np.stack([-half, half])
 
 
+def _listed(study: Study, names: Sequence[str]) -> tuple[Array, Array]:
+    """What [uncertain] lists of parts: means of ln s_E and ln s_m (p, 2), and a root of their covariance (p, 2, keys).
+
+    Parts of one material have its E and its density in common.
+    """
+    found = {key: one for key, one in stated(study.uncertain).items() if of_parts(key)}
+    means, roots = np.zeros((len(names), 2)), np.zeros((len(names), 2, len(found)))
+    for column, (key, one) in enumerate(found.items()):
+        number = number_of(key)
+        low, middle, high = one.quantile(LEVELS)
+        for k, name in enumerate(names):
+            if number.owner == (name if number.room == "part" else study.parts[name]):
+                material, which = study.materials[study.parts[name]], int(number.name in ("density", "mass"))
+                put = number.put(material, middle)
+                means[k, which] += np.log((put.density / material.density) if which else put.E / material.E)
+                roots[k, which, column] = np.log(high / low) / (2 * SCORE)
+    return means, roots
+
+
 def energy_shares(
-    structure: Structure, parts: Sequence[PartAlone], frequencies: Array, shapes: Array
+    structure: Structure, parts: Sequence[PartAlone], counted: int, frequencies: Array, shapes: Array
 ) -> tuple[Array, Array, Array]:
     """Shares [-] of some parts in the strain and the kinetic energy of modes (p, m); of other parts in strain (m,).
 
-    frequencies, shapes: of elastic modes, [Hz] (m,) and mass-normalised (n, m).
+    counted: how many of the parts are none of the others; frequencies, shapes: of elastic modes, [Hz] (m,) and
+    mass-normalised (n, m).
     """
     squares, strain, kinetic = (2 * np.pi * frequencies) ** 2, [], []
     for part in parts:
@@ -252,4 +301,4 @@ def energy_shares(
         strain.append(np.einsum("im,im->m", own, K @ own) / squares)
         kinetic.append(np.einsum("im,im->m", own, M @ own))
     every = np.einsum("im,im->m", shapes, structure.matrices[0] @ shapes) / squares
-    return np.stack(strain), np.stack(kinetic), np.clip(every - np.sum(strain, axis=0), 0.0, 1.0)
+    return np.stack(strain), np.stack(kinetic), np.clip(every - np.sum(strain[:counted], axis=0), 0.0, 1.0)

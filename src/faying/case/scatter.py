@@ -27,8 +27,11 @@ TWO_SIGMA = 0.02275  # probability below two standard deviations
 Known = Mapping[str, Distribution]  # what scatters, by its key
 SCORE = 1.6449  # standard deviations from the median to these ends
 ONE_EACH_WAY = np.array([-1.0, 1.0])[:, None, None]  # of ends (2, loads, m) about a median
-OF_PARTS = ("E", "density")
-IN_INTERVALS = (*OF_PARTS, "stiffness", "tangential", "preload", "factor")  # what a run takes from [uncertain]
+# numbers, each with its table, that a run takes from [uncertain] beside those of parts
+IN_INTERVALS = {
+    *(("joint", name) for name in ("stiffness", "tangential", "form.waviness_seed")),
+    *(("bolt", name) for name in ("preload", "factor")),
+}
 # of ln f by E: half of the coefficient of variation 0.03 of steel, JCSS Probabilistic Model Code, part 3.2
 YOUNG = 0.015
 DENSITY_SD = 0.01  # of ln density of steel (JCSS Probabilistic Model Code, part 2.1)
@@ -118,8 +121,13 @@ def stated(choice: UncertainChoice | None) -> Known:
 
 
 def of_parts(key: str) -> bool:
-    """Whether a number that varies is one of a material that its parts' own tests tell: E, density."""
-    return key.startswith("material.") and key.rsplit(".", 1)[-1] in OF_PARTS
+    """Whether a number that varies is one that parts' own tests tell: E, density, or a factor on a part."""
+    return number_of(key).room in ("material", "part")
+
+
+def in_intervals(key: str) -> bool:
+    """Whether a run takes from [uncertain] how a number scatters."""
+    return of_parts(key) or (number_of(key).room, number_of(key).name) in IN_INTERVALS
 
 
 def known_of(case: Case) -> Known:
@@ -132,38 +140,22 @@ def of_number(known: Known, joint: str, name: str) -> Distribution | None:
     return known.get(f"joint.{joint}.{name}") or known.get(f"joint.{name}")
 
 
-def force_factors(known: Known, bolt: str, shares: Array) -> Array:
+def force_factors(known: Known, study: Study, bolt: int, shares: Array) -> Array:
     """Force of a bolt over the one that the study states [-], at shares of probability of any shape."""
-    for owner in (f"bolt.{bolt}", "bolt"):
+    for owner in (f"bolt.{study.bolts[bolt].name}", "bolt"):
         if (factor := known.get(f"{owner}.factor")) is not None:
             return factor.quantile(shares)
-        if (force := known.get(f"{owner}.preload")) is not None:  # the study has its median
-            return force.quantile(shares) / force.median
+        if (force := known.get(f"{owner}.preload")) is not None:  # of studies of one preload alone
+            return np.asarray(force.quantile(shares) / study.preloads[0].forces[bolt])
     return np.ones_like(shares)
 
 
-def _parts_sd(choice: UncertainChoice | None) -> float | None:
-    """Standard deviation of ln f by E and density, half of theirs [-]; None where [uncertain] lists neither."""
-    spread: dict[str, float] = {}
-    for key, one in stated(choice).items():
-        if of_parts(key):
-            kind = key.rsplit(".", 1)[-1]
-            low, high = one.quantile(ENDS)
-            spread[kind] = max(spread.get(kind, 0.0), float(np.log(high / low)) / (2 * SCORE))
-    return hypot(*spread.values()) / 2 if spread else None
-
-
-def unlisted_sd(choice: UncertainChoice | None) -> float:
-    """Standard deviation of ln f that all modes share [-], but for E and density where [uncertain] lists them."""
+def structure_sd(choice: UncertainChoice | None) -> float:
+    """Standard deviation of ln f that all modes share [-], beyond E and density where [uncertain] lists them."""
     if choice is not None and choice.structure is not None:
         return float(choice.structure.median)
     common = default("structure").spread
-    return common if _parts_sd(choice) is None else sqrt(common**2 - YOUNG**2)
-
-
-def structure_sd(choice: UncertainChoice | None) -> float:
-    """Standard deviation of ln f that all modes share [-]."""
-    return hypot(unlisted_sd(choice), _parts_sd(choice) or 0.0)
+    return sqrt(common**2 - YOUNG**2) if any(map(of_parts, stated(choice))) else common
 
 
 def mode_sd(choice: UncertainChoice | None) -> float:
@@ -174,7 +166,7 @@ def mode_sd(choice: UncertainChoice | None) -> float:
 
 def discrepancy(choice: UncertainChoice) -> float:
     """Standard deviation of ln f [-] that samples of a prediction lack."""
-    return hypot(mode_sd(choice), unlisted_sd(choice))
+    return hypot(mode_sd(choice), structure_sd(choice))
 
 
 def with_assumed(

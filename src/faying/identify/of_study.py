@@ -189,7 +189,10 @@ def _identified(
         )
     found, cut = [], cut_notes(ensemble.inputs.columns)
     if study.part_tests and not tested:
-        text = "E or density is listed under [uncertain] and identified; what was measured of parts alone is not used"
+        text = (
+            "E, density or a factor on a part is listed under [uncertain] and identified; what was measured of parts "
+            "alone is not used"
+        )
         cut.append(Note(code="left-out", text=text))
     for law in range(max(len(choice.models), 1)):
         parts = KnownParts.of(study, reduced.trainer.structure, reduced.modes(ensemble, law)) if tested else None

@@ -71,7 +71,7 @@ class Drawn:
         study, bolts = case.study, len(case.study.bolts)
         shares = sobol(2 * bolts + 2 * len(plays), count, seed)
         known = known_of(case)
-        factors = [force_factors(known, bolt.name, shares[:, k]) for k, bolt in enumerate(study.bolts)]
+        factors = [force_factors(known, study, k, shares[:, k]) for k in range(bolts)]
         base = np.array(study.preloads[0].order or range(bolts))
         orders = np.argsort(shares[:, bolts : 2 * bolts], axis=1)[:, base]  # the study's order, with bolts renamed
         shifts = np.zeros((count, len(faces), 3))

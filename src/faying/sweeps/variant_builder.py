@@ -1,6 +1,6 @@
 """What makes the laws, forces, gaps and scales of one point of a sweep or of an ensemble."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
@@ -22,7 +22,7 @@ from faying.reduction.reduce import Gapped
 from faying.reduction.reduced import ReducedModel
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import Surface
-from faying.study.keys.varied import MODEL, number_of, owners, varied
+from faying.study.keys.varied import MODEL, Varied, number_of, owners, varied
 from faying.study.study import Study
 from faying.typing import Array
 
@@ -66,21 +66,25 @@ class StudyVariant:
     scales: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def with_values(self, values: Mapping[str, Any]) -> "StudyVariant":
-        """The same with values by key, in SI units, put in; a key that names one owner counts above one for all."""
-        out = self
-        for key in sorted(values, key=lambda key: key != MODEL and number_of(key).owner is not None):
-            out = out.with_value(key, values[key])
+        """The same with values by key, in SI units, put in: factors last, on what the other values are.
+
+        A key that names one owner counts above one for all.
+        """
+        out, numbers = self, [number_of(key) for key in values if key != MODEL]
+        if MODEL in values:
+            out = replace(self, study=replace(self.study, law=replace(self.study.law, model=values[MODEL])))
+        for number in sorted(numbers, key=lambda one: (one.name == "factor", one.name)):
+            named = {one.owner for one in numbers if one.owner and (one.room, one.name) == (number.room, number.name)}
+            out = out._with(number, values[number.key], named)
         return out
 
-    def with_value(self, key: str, value: Any) -> "StudyVariant":
-        """The same with one more value, in SI units, put in: for all owners of the number, or the one that is named."""
+    def _with(self, number: Varied, value: Any, named: Collection[str]) -> "StudyVariant":
+        """The same with one more value: of all owners of the number but the named ones, or of the one it names."""
         study = self.study
-        if key == MODEL:
-            return replace(self, study=replace(study, law=replace(study.law, model=value)))
-        number = number_of(key)
 
         def put(owner: Any, name: str | None = None) -> Any:
-            return number.put(owner, value) if number.owner in (None, name) else owner
+            mine = name not in named if number.owner is None else number.owner == name
+            return number.put(owner, value) if mine else owner
 
         if number.room == "law":
             return replace(self, study=replace(study, law=put(study.law)))
@@ -94,7 +98,7 @@ class StudyVariant:
             columns = [put(self.forces[..., k], bolt.name) for k, bolt in enumerate(study.bolts)]
             return replace(self, forces=np.stack(columns, axis=-1))
         scales = dict(self.scales)
-        for part in scaled_parts(study, [key]):
+        for part in scaled_parts(study, [number.key]):
             material = study.materials[study.parts[part]]
             new, (stiffness, mass) = number.put(material, value), scales.get(part, (1.0, 1.0))
             scales[part] = stiffness * (new.E / material.E), mass * (new.density / material.density)

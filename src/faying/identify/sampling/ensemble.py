@@ -106,7 +106,7 @@ def _with_surface(
     D = named.pop("surface.D")
     (_, both), (_, var) = rule.covariance
     level = rule.level(D0, G0) + both / var * (D - D0) + np.log(named.pop(LEVEL))
-    return point.with_value("surface.D", D).with_value("surface.G", rule.G(D, level))
+    return point.with_values({"surface.D": D, "surface.G": rule.G(D, level)})
 
 
 def _of_fit(

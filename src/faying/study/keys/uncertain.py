@@ -159,7 +159,23 @@ def read_uncertain(
             take()
         except InputError as fault:
             faults.add(str(fault))
+    for text in _twice([*map(number_of, reader.inputs)], known):
+        faults.add(text)
     return UncertainChoice(inputs=tuple(reader.inputs.values()), **reader.rest)
+
+
+def _twice(numbers: Sequence[Varied], known: Known) -> Iterator[str]:
+    """Say what scatters by two lines: of all owners and of each of them, or a force and a factor on it."""
+    names = {"joint": [joint.name for joint in known.joints], "bolt": known.bolts}
+    by_place = {(one.room, one.name, one.owner): one.key for one in numbers}
+    for (room, name, owner), key in by_place.items():
+        own = [by_place.get((room, name, each), "") for each in names.get(room, ())] if owner is None else []
+        others = own if own and all(own) else []
+        if (room, name) == ("bolt", "preload"):
+            whose = [owner, None] if owner else [None, *known.bolts]
+            others = [*others, *(by_place[at] for each in whose if (at := (room, "factor", each)) in by_place)]
+        if others:
+            yield f"uncertain: {key} scatters already by {', '.join(others)}; leave one of them out"
 
 
 def flat(table: Mapping[str, Any], before: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
