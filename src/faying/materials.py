@@ -49,7 +49,8 @@ class Material:
         expansion: coefficient of linear thermal expansion [1/K].
         source: where the numbers come from.
 
-    Quantities may also be text with a unit, for example "210 GPa".
+    Quantities may also be text with a unit, for example "210 GPa". `dataclasses.replace` keeps a hardness and a vickers
+    that followed from the numbers before: replace them with the yield strength, or with brinell.
 
     Raises:
         InputError: for values that no isotropic material can have.

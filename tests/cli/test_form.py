@@ -32,6 +32,16 @@ def test_text_and_json(file, tmp_path):
     assert as_gap["crown_along"]["values"] == pytest.approx(-6e-6)
 
 
+def test_gaps_are_no_heights(file, tmp_path):
+    """A gap that is wide in the middle is a hollow: without --gap its crowns came out with the other sign."""
+    gaps = tmp_path / "gap.csv"
+    gaps.write_text(file.read_text().replace("x, y, z", "x [mm], y [mm], gap [um]").replace("# ", ""))
+    done = CliRunner().invoke(cli, ["form", str(gaps)])
+    assert isinstance(done.exception, faying.FayingError)
+    found = json.loads(CliRunner().invoke(cli, ["form", str(gaps), "--gap", "--json"]).output)
+    assert found["crown_along"]["values"] == pytest.approx(-6e-6)
+
+
 def test_what_it_refuses(file):
     done = CliRunner().invoke(cli, ["form", str(file), "--xy-unit", "mm"])
     assert isinstance(done.exception, faying.InputError)

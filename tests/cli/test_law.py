@@ -2,11 +2,13 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
+import faying
 from faying import CATALOGUE, JK, ContactPair, InputError, Material
 from faying.cli.scan.law import command
 
@@ -57,11 +59,27 @@ def test_options_reach_the_law() -> None:
         )
     )
     steel = CATALOGUE["45 steel"]
-    from dataclasses import replace
-
     hard = replace(steel, hardness=1e9)
     law = LAW.with_(closure="printed", shear_stress=1e6, pair=ContactPair(hard, hard))
     assert out["k_t"]["values"] == pytest.approx([float(law.at_pressure(2e6).k_t)], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "changes"),
+    [
+        (("--hardness", "3 GPa"), {"hardness": 3e9}),
+        (("--yield-strength", "1 GPa"), {"hardness": None, "yield_strength": 1e9}),
+    ],
+)
+def test_a_hardness_that_is_given_is_that_of_every_law(given, changes) -> None:
+    """The Brinell hardness of the catalogue stayed, and the laws that take it did not move."""
+    scan = Path(__file__).parents[2] / "examples" / "t-specimen" / "milled.x3p"
+    of_scan = ("--scan", str(scan), "--model", "cmy", "--material", "45 steel", "--pressure", "2 MPa", "--json")
+    hard = replace(CATALOGUE["45 steel"], brinell=None, vickers=None, **changes)
+    law = faying.Mates(faying.read_scan(scan), materials=ContactPair(hard, hard)).law("cmy")
+    found = json.loads(run(*of_scan, *given))["k_n"]["values"]
+    assert found == pytest.approx([float(law.at_pressure(2e6).k_n)], rel=1e-9)
+    assert found != pytest.approx(json.loads(run(*of_scan))["k_n"]["values"], rel=0.01)
 
 
 def test_material_without_catalogue() -> None:

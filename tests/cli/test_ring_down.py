@@ -2,11 +2,13 @@
 
 import json
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import faying
 from faying.cli import main
 from faying.measured.ring_down import MeasuredBackbone
 
@@ -61,6 +63,31 @@ def test_a_record_that_begins_before_the_hit_keeps_its_time(record, capsys, tmp_
     first, second = (np.array(one["time"]["values"]) for one in found)
     assert first == pytest.approx(second - 0.5, abs=1e-6)
     assert found[0]["acceleration"]["values"] == pytest.approx(found[1]["acceleration"]["values"], rel=1e-5)
+
+
+def test_the_number_of_an_frf_is_its_place_in_the_file(capsys, tmp_path):
+    """Outputs 1 and 2 by input 1, then by input 2: the second FRF was the first output's by input 2."""
+    lines = np.arange(0, 200, 0.25)
+    speeds = 2 * np.pi * np.array([[90.0, 105.0], [95.0, 110.0]])[:, :, None]
+    values = 1 / (speeds**2 - (2 * np.pi * lines) ** 2 + 0.008j * speeds * 2 * np.pi * lines)
+    pairs = [(1, "z"), (2, "z")]
+    whole = faying.FRF(frequency=lines, values=values, outputs=pairs, inputs=pairs, quantity="receptance")
+    each = [
+        replace(whole, values=values[o : o + 1, i : i + 1], outputs=pairs[o : o + 1], inputs=pairs[i : i + 1])
+        for o, i in ((0, 0), (1, 0), (0, 1), (1, 1))
+    ]
+    file = faying.write_uff(tmp_path / "hits.uff", *each)
+    for number, frequency in enumerate((90, 95, 105, 110), start=1):
+        band = ["--band", f"{frequency - 15} Hz:{frequency + 15} Hz"]
+        code, said = call(capsys, file, *band, "--impulse", "1 N s", "--function", number, "--json")
+        assert not code, said.err
+        assert json.loads(said.out)["frequency"]["values"][0] == pytest.approx(frequency, rel=1e-3)
+    twice = faying.write_uff(tmp_path / "twice.uff", *each[:2], each[0])
+    code, said = call(capsys, twice, *BAND, "--impulse", "1 N s", "--function", 3)
+    assert code
+    assert "FRF 3 is of the points of FRF 1, which is the one that is read" in said.err
+    code, said = call(capsys, file, *BAND, "--impulse", "1 N s")
+    assert "has 4 FRFs; give one of them with --function (1: 1+z by 1+z, 2: 2+z by 1+z, 3: 1+z by 2+z" in said.err
 
 
 def test_the_example_gives_back_what_it_was_made_of(capsys, tmp_path):

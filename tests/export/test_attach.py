@@ -1,6 +1,7 @@
 """A law on two faces of a user's model: pressures from everywhere, modes from matrices, and every fault told."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from faying.cli.main import main
 from faying.export.attach import attach
 from faying.fe.elasticity import assemble
 from faying.fe.mesh import Mesh
+from faying.joint.preload_case import PreloadCase
 from faying.numerics.modes import lowest_modes
 from faying.study import Study
 from tests.helpers import meshfiles
@@ -149,6 +151,15 @@ def test_pressure_from_our_preload(tmp_path):
         attached(tmp_path, "solve")
     with pytest.raises(faying.InputError, match="preload = 2 kN: the study has no such preload; it has 1 kN, 3 kN"):
         attached(tmp_path, "solve", preload="2 kN")
+
+
+@pytest.mark.parametrize("pressure", ["solve", "5 MPa"])
+def test_springs_of_a_joint_that_has_carried_more_are_refused(pressure, tmp_path):
+    """Under a pressure that was given they were those of first loading, half as stiff, without a word."""
+    file, study = model(tmp_path)
+    settled = replace(study, preloads=(PreloadCase((1e3,), after=((3e3,),), settled=True),))
+    with pytest.raises(faying.InputError, match="1 kN: springs at nodes are those of first loading"):
+        attach(file, FACES, unit="mm", study=settled, pressure=pressure)
 
 
 def test_frequencies_are_those_of_a_study(tmp_path):

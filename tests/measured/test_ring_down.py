@@ -260,6 +260,15 @@ def test_an_impulse_is_needed_for_an_frf():
         ring_down_of_frf(frf, impulse=0.0, band=(1, 2))
 
 
+def test_lines_between_the_multiples_of_their_spacing_are_refused():
+    """They were moved to the nearest multiple: 99.90 Hz for 100."""
+    lines = np.arange(50.35, 150, 0.25)
+    values = 1 / (OMEGA**2 - (2 * np.pi * lines) ** 2 + 0.008j * OMEGA * 2 * np.pi * lines)
+    frf = FRF(frequency=lines, values=values[None, None], outputs=[(1, "z")], inputs=[(1, "z")], quantity="receptance")
+    with pytest.raises(faying.InputError, match=r"the first spectral line, 50.35 Hz, is not a multiple of .* 0.25 Hz"):
+        ring_down_of_frf(frf, impulse=1.0, band=(85, 115))
+
+
 def test_measured_points_from_a_table(tmp_path):
     file = tmp_path / "points.csv"
     file.write_text("# beam\nfrequency [Hz],damping [%],acceleration [g_0]\n180,0.1,0.5\n178.5,0.32,2\n")

@@ -1,11 +1,12 @@
 import gc
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import pyuff
 
-from faying import FRF, InputError, ReadError, read_uff, write_uff
+from faying import FRF, InputError, ReadError, identify_modes, read_uff, write_uff
 from faying.measured.frf import Dof
 from faying.measured.modes import ModeSet
 from faying.measured.tested import read_test
@@ -252,6 +253,27 @@ def test_a_test_written_with_the_other_sign_of_time_is_turned_for_the_comparison
     np.testing.assert_allclose(found.modes.frequencies, [60, 180], rtol=1e-5)
     np.testing.assert_allclose(found.frf.values, frf.values[:, :, 1:], rtol=1e-5, atol=1e-9)
     assert any("their conjugates are taken" in words for words in found.notes)
+
+
+def test_frfs_beside_shapes_are_turned_too(tmp_path, synthetic):
+    """FRAC of such a file was 0.003 for 1."""
+    frf, _ = synthetic(((60.0, 0.01), (180.0, 0.005)), last=300.0, outputs=2)
+    modes = identify_modes(frf).modes
+    for name, values in (("right", frf.values), ("turned", frf.values.conj())):
+        found = read_test(write_uff(tmp_path / f"{name}.uff", modes, replace(frf, values=values)))
+        assert not found.identified
+        np.testing.assert_allclose(found.frf.values, frf.values, rtol=1e-5, atol=1e-9)
+        assert any("their conjugates are taken" in words for words in found.notes) == (name == "turned")
+
+
+def test_the_decay_of_a_window_is_written_and_read(tmp_path, synthetic):
+    frf, _ = synthetic(((60.0, 0.01), (180.0, 0.005)), last=300.0, outputs=2)
+    file = write_uff(tmp_path / "a.uff", replace(frf, window_decay=1.25))
+    assert read_uff(file).frf().window_decay == 1.25
+    assert read_test(file).modes.loss_factors == pytest.approx(
+        identify_modes(replace(frf, window_decay=1.25)).modes.loss_factors, rel=1e-6
+    )
+    assert read_uff(write_uff(tmp_path / "b.uff", frf)).frf().window_decay == 0
 
 
 def test_positions_in_the_units_of_the_file(tmp_path):

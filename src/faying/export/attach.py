@@ -197,6 +197,11 @@ def attach(
     at_frequency = None if frequency is None else number(frequency, "frequency", "Hz", least=0)
     spec = _joint(study, faces, joint)
     solving = str(pressure) == "solve"
+    if any(case.after for case in study.preloads):
+        raise InputError(
+            f"{', '.join(study.load_names)}: springs at nodes are those of first loading, and this joint has carried "
+            "more before; faying condense takes it"
+        )
     geometry = GeometryChoice(mesh=file, unit=unit, sets=study.geometry.sets)
     if solving:
         moved = replace(
@@ -338,11 +343,6 @@ def _solved(study: Study, mesh: Mesh, faces: tuple[str, str], preload: str | Non
         known = ", ".join(one.name for one in study.preloads)
         raise InputError(f"the study has the preloads {known}; say which by preload (--preload)")
     number = preload_index(loads, preload, names=study.load_names)
-    if study.preloads[number].after:
-        raise InputError(
-            f"{study.load_names[number]}: springs at nodes are those of first loading, and this joint has carried more "
-            "before; faying condense takes it"
-        )
     surfaces = surfaces_of(study)
     case = Case(study=study, structure=structure_of(study, mesh, surfaces), surfaces=surfaces)
     case, springs = under_preload(case, number, Progress(number + 1))

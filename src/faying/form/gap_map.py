@@ -166,7 +166,12 @@ def _points(path: Path, xy_unit: str | None, z: Wanted, form: str) -> tuple[Arra
 
 
 def read_heights(
-    path: Path, *, xy_unit: str | None = None, z_unit: str | None = None, channel: str | None = None
+    path: Path,
+    *,
+    xy_unit: str | None = None,
+    z_unit: str | None = None,
+    channel: str | None = None,
+    is_gap: bool = False,
 ) -> tuple[Array, Array]:
     """Read measured form: places (n, 2) [m] and heights, or gaps, (n,) [m].
 
@@ -177,7 +182,8 @@ def read_heights(
     """
     kind = kind_of(path, "numbers")
     if kind is not None and "numbers" in kind.serves:
-        z = Wanted(names=("z", "height", "heights", "gap"), unit="m", given=z_unit, key="z_unit")
+        names = ("gap", "z") if is_gap else ("z", "height", "heights")
+        z = Wanted(names=names, unit="m", given=z_unit, key="z_unit")
         return _points(path, xy_unit, z, "a list of measured points has the columns x, y, z")
     from faying.surface.files.read import read_scan
     from faying.surface.form import find_spikes, levelled

@@ -169,6 +169,17 @@ class FRF(Summary):
         return float(gaps.mean())
 
     @property
+    def whole_step(self) -> float:
+        """The same of lines that are all multiples of it. InputError where they are not."""
+        step = self.step
+        if abs(self.frequency[0] / step - round(self.frequency[0] / step)) > 1e-2:
+            raise InputError(
+                f"the first spectral line, {self.frequency[0]:g} Hz, is not a multiple of the spacing {step:g} Hz; "
+                "interpolate the FRFs to lines at multiples of the spacing"
+            )
+        return step
+
+    @property
     def measured(self) -> list[tuple[int, int]]:
         """Indices (output, input) of the pairs that were measured."""
         return [(int(o), int(i)) for o, i in np.argwhere(np.isfinite(self.values[:, :, 0]))]

@@ -11,8 +11,10 @@ from faying.measured.modes import ModeSet
 from faying.measured.poles import Poles, Rule, poles_by_order, tracks
 from faying.misuse import checked_call
 from faying.style import Summary
-from faying.typing import Array, Complex
+from faying.text import listed
+from faying.typing import Array, Complex, Mask
 
+ALTERNATIONS = 200  # of least squares; what is joined by a chain of pairs takes one for each, noise some ten more
 UNWEIGHED = "the coherence is read and not used: all spectral lines count alike"
 TURNED = (
     "the poles of the FRFs grow in time, and those of their complex conjugates decay: they are written with "
@@ -95,7 +97,8 @@ def identify_modes(
     z_interval = z_interval - (used.window_decay / np.abs(poles))[:, None]
     poles = poles + used.window_decay
     frequencies, damping = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
-    shapes, dofs = _shapes(used, constants)
+    shapes, dofs, unjoined = _shapes(used, constants)
+    used = replace(used, warnings=(*used.warnings, *unjoined))
     modes = ModeSet(
         frequencies=frequencies,
         loss_factors=2 * damping,
@@ -151,14 +154,44 @@ def _interval(value: Array, spread: Array, other: Array) -> Array:
     return np.stack([np.minimum(value - spread, other), np.maximum(value + spread, other)], axis=1)
 
 
-def _shapes(frf: FRF, constants: Complex) -> tuple[Complex, tuple[Dof, ...]]:
-    """Shapes (m, d) scaled to 1 at their largest component, from residue matrices of rank one."""
-    matrix = np.zeros((len(constants), len(frf.outputs), len(frf.inputs)), complex)
+def _shapes(frf: FRF, constants: Complex) -> tuple[Complex, tuple[Dof, ...], tuple[str, ...]]:
+    """Shapes (m, d) scaled to 1 at their largest component, from residue matrices of rank one; what is left out.
+
+    No shape joins outputs that have no input in common, nor are joined by others: those of most pairs are taken.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    matrix = np.full((len(constants), len(frf.outputs), len(frf.inputs)), np.nan + 0j)
     for n, (o, i) in enumerate(frf.measured):
         matrix[:, o, i] = constants[:, n]
-    rove = len(frf.inputs) > len(frf.outputs)
-    if rove:
-        matrix = matrix.transpose(0, 2, 1)
-    shapes = np.array([np.linalg.svd(m, full_matrices=False)[0][:, 0] for m in matrix])
+    dofs = frf.outputs
+    if len(frf.inputs) > len(frf.outputs):
+        matrix, dofs = matrix.transpose(0, 2, 1), frf.inputs
+    known = np.isfinite(matrix[0])
+    joined = connected_components(csr_array(known.astype(int) @ known.T.astype(int)))[1]
+    kept = joined == np.bincount(joined, weights=known.sum(axis=1)).argmax()
+    shapes = np.array([_of_rank_one(m) for m in matrix[:, kept]])
     peak = shapes[np.arange(len(shapes)), np.abs(shapes).argmax(axis=1)]
-    return shapes / peak[:, None], frf.inputs if rove else frf.outputs
+    apart = [str(dof) for dof, keep in zip(dofs, kept, strict=True) if not keep]
+    note = f"shapes are without {listed(apart, 8)}: no FRFs join them to the others; measure all from one point"
+    return shapes / peak[:, None], tuple(dof for dof in dofs if str(dof) not in apart), (note,) if apart else ()
+
+
+def _of_rank_one(matrix: Complex) -> Complex:
+    """The vector u (d,) of the matrix u v of rank one that is nearest to one (d, i) with NaN where it is not known."""
+    known = np.isfinite(matrix)
+    filled = np.where(known, matrix, 0.0)
+    if known.all():
+        return np.asarray(np.linalg.svd(filled, full_matrices=False)[0][:, 0])
+    u = filled[:, known.sum(axis=0).argmax()]
+    for _ in range(ALTERNATIONS):
+        v = _share(filled.T, known.T, u)
+        u = _share(filled, known, v / np.abs(v).max())
+    return u
+
+
+def _share(matrix: Complex, known: Mask, by: Complex) -> Complex:
+    """Factors (d,) that make least squares of matrix (d, i) - factor by (i,) where it is known."""
+    squares = known @ np.abs(by) ** 2
+    return np.asarray(np.divide(matrix @ by.conj(), squares, out=np.zeros(len(matrix), complex), where=squares > 0))

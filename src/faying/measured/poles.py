@@ -66,15 +66,8 @@ def poles_by_order(frf: FRF, highest_order: int) -> list[Complex]:
     LSCF of sdypy-EMA (Guillaume et al. 2003; Verboven 2002), without its windows. The spectral lines must be evenly
     spaced and at multiples of their spacing, else InputError.
     """
-    step = frf.step
-    first = frf.frequency[0] / step
-    if abs(first - round(first)) > 0.01:
-        raise InputError(
-            f"the first spectral line, {frf.frequency[0]:g} Hz, is not a multiple of the spacing {step:g} "
-            "Hz; interpolate "
-            "the FRFs to lines at multiples of the spacing"
-        )
-    lines = round(first)
+    step = frf.whole_step
+    lines = round(frf.frequency[0] / step)
     rows = compressed(frf.rows(), 2 * highest_order)
     if len(rows[0]) < 4 * highest_order:
         raise InputError(

@@ -232,7 +232,7 @@ def ring_down_of_frf(
     whole(output, "output", least=0, greatest=len(frf.outputs) - 1)
     whole(input, "input", least=0, greatest=len(frf.inputs) - 1)
     _check_band(band, float(frf.frequency[-1]))
-    values, step = frf.values[output, input], frf.step
+    values, step = frf.values[output, input], frf.whole_step
     if not np.all(np.isfinite(values)):
         raise InputError(f"output {output} and input {input} were not measured together")
     # more instants than lines, so that the curve is smooth: zeros beyond the last line

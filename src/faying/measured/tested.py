@@ -1,5 +1,6 @@
 """A hammer test from its file: modes, FRFs where there are some, and the frame it lies in."""
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -46,13 +47,16 @@ def read_test(
     points: table of positions; length_unit, direction, quantity: what the file does not say. Raises ReadError and
     InputError as `read_uff`, `read_points` and `identify_modes` do.
     """
-    from faying.measured.identify import identify_modes
+    from faying.measured.identify import TURNED, identify_modes
     from faying.measured.uff import read_uff
 
     file = read_uff(path, length_unit=length_unit)
     frf = file.frf(quantity=quantity) if any(f.kind == "FRF" for f in file.functions) or not file.shapes else None
     if file.shapes or frf is None:
         modes = file.modes()
+        with suppress(InputError):  # of FRFs that have no pole to tell the sign of time from
+            if frf is not None and (identified := identify_modes(frf)).turned:
+                frf = replace(frf, values=frf.values.conj(), warnings=(*frf.warnings, TURNED))
     else:
         identified = identify_modes(frf)
         modes, frf = identified.modes, identified.frf

@@ -22,7 +22,8 @@ def write_uff(path: str | Path, *contents: ModeSet | FRF, title: str = "Faying")
 
     The format keeps six digits of frequencies and shapes, twelve of FRFs. A loss factor is written as a viscous damping
     ratio of half its size; complex shapes with their pole. Modes are written in x, y, z, with zeros where a direction
-    is not known; intervals stand in the header. The file appears whole or not at all.
+    is not known. Intervals, and the decay of an exponential window, stand in the header. The file appears whole or not
+    at all.
 
     Args:
         path: of the file.
@@ -127,6 +128,7 @@ def _functions(frf: FRF) -> list[dict[str, Any]]:
         common = {
             "type": 58,
             "id1": f"{frf.outputs[o]} / {frf.inputs[i]}",
+            **({"id2": f"exponential window of decay {frf.window_decay:.12g} 1/s"} if frf.window_decay else {}),
             **_place("rsp", frf.outputs[o]),
             **_place("ref", frf.inputs[i]),
             "abscissa_spacing": int(even),

@@ -1,5 +1,6 @@
 """What a universal file of a modal test holds, as FRFs and as mode shapes."""
 
+import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,6 +16,8 @@ from faying.measured.modes import ModeSet
 from faying.measured.uff_units import FileUnits, frf_scale, hertz
 from faying.style import Summary
 from faying.typing import Array
+
+WINDOW = r"exponential window of decay (\S+) 1/s"  # as `write_uff` says it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,17 +75,15 @@ class UniversalFile(Summary):
             )
             raise ReadError(f"{self.source}: no FRF (function type 4) in it, only {kinds}; export the FRFs of the test")
         notes: list[str] = list(self.warnings)
-        nameless = len({(f.output, f.input) for f in found}) < len(found) and all(f.output.point == 0 for f in found)
-        if nameless:
+        if self._nameless:
             notes.append(f"{self.source}: the FRFs name no points; they are numbered in their order")
         pairs: dict[tuple[Dof, Dof], tuple[str, NDArray[Any]]] = {}
         lines: Array | None = None
-        for n, f in enumerate(found):
+        for f, pair in zip(found, self.pairs, strict=True):
             kind, factor, note = frf_scale(dict(f.header), self.units, quantity, f.where)
             x = f.x * hertz(dict(f.header), f.where)
             if note and note.partition(": ")[2] not in {w.partition(": ")[2] for w in notes}:
                 notes.append(note)
-            pair = (Dof(n + 1, f.output.direction) if nameless else self._straight(f.output), self._straight(f.input))
             lines = x if lines is None else lines
             if not np.array_equal(x, lines):
                 raise ReadError(
@@ -104,6 +105,9 @@ class UniversalFile(Summary):
         for (o, i), (_, data) in pairs.items():
             values[outputs.index(o), inputs.index(i)] = data
         assert lines is not None
+        decays = {float(of[1]) if (of := re.fullmatch(WINDOW, f.header.get("id2", "").strip())) else 0.0 for f in found}
+        if len(decays) > 1:
+            raise ReadError(f"{self.source}: its FRFs have exponential windows of decay {decays}; split the file")
         used, static = without_static(lines, np.array([data for _, data in pairs.values()]), self.source)
         coherence = self._coherence(outputs, inputs, values.shape)
         return FRF(
@@ -114,9 +118,25 @@ class UniversalFile(Summary):
             quantity=quantities.pop(),
             coherence=None if coherence is None else coherence[:, :, used],
             positions=self.positions,
+            window_decay=decays.pop(),
             source=self.source,
             warnings=(*dict.fromkeys(notes), *static),
         )
+
+    @property
+    def pairs(self) -> tuple[tuple[Dof, Dof], ...]:
+        """Output and input of each FRF, as the file has them one after the other."""
+        found = [f for f in self.functions if f.kind == "FRF"]
+        return tuple(
+            (Dof(n, f.output.direction) if self._nameless else self._straight(f.output), self._straight(f.input))
+            for n, f in enumerate(found, start=1)
+        )
+
+    @property
+    def _nameless(self) -> bool:
+        """Whether the FRFs are numbered, since they name no points."""
+        found = [f for f in self.functions if f.kind == "FRF"]
+        return len({(f.output, f.input) for f in found}) < len(found) and all(f.output.point == 0 for f in found)
 
     def _coherence(self, outputs: tuple[Dof, ...], inputs: tuple[Dof, ...], shape: tuple[int, ...]) -> Array | None:
         out = np.full(shape, np.nan)

@@ -70,12 +70,18 @@ def decay(record: Path, options: dict[str, Any]) -> Any:
         raise InputError(f'{record}: an FRF does not give the strength of the hit; give --impulse "0.3 N s"')
     if options["start"] is not None:
         raise InputError("--start is for a record in time; an FRF begins with the hit, so leave --start out")
-    frf = read_uff(record).frf()
-    both = [(o, i) for o in range(frf.values.shape[0]) for i in range(frf.values.shape[1])]
-    if (options["function"] is None and len(both) > 1) or (options["function"] or 1) > len(both):
-        named = ", ".join(f"{k}: {frf.outputs[o]} by {frf.inputs[i]}" for k, (o, i) in enumerate(both, start=1))
-        raise InputError(f"{record} has {len(both)} FRFs; give one of them with --function ({named})")
-    output, by = both[(options["function"] or 1) - 1]
+    file = read_uff(record)
+    frf, pairs = file.frf(), file.pairs
+    number = (options["function"] or 1) - 1
+    if (options["function"] is None and len(pairs) > 1) or number >= len(pairs):
+        named = ", ".join(f"{k}: {output} by {by}" for k, (output, by) in enumerate(pairs, start=1))
+        raise InputError(f"{record} has {len(pairs)} FRFs; give one of them with --function ({named})")
+    if (first := pairs.index(pairs[number])) < number:
+        raise InputError(
+            f"{record}: FRF {number + 1} is of the points of FRF {first + 1}, which is the one that is read"
+        )
+    output, by = frf.outputs.index(pairs[number][0]), frf.inputs.index(pairs[number][1])
     impulse = units.parse(options["impulse"], "N*s", name="--impulse")
     found = ring_down_of_frf(frf, impulse=impulse, band=band, output=output, input=by, cycles=cycles)
-    return replace(found, source=record.name)
+    of_which = ", {} by {}".format(*pairs[number]) if len(pairs) > 1 else ""
+    return replace(found, source=f"{record.name}{of_which}")

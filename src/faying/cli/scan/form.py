@@ -19,7 +19,7 @@ from faying.units import show
 @click.option("--gap", "is_gap", is_flag=True, help="The values are gaps between two faces, not heights of one.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of text.")
 @click.option("--plot", type=FILE, help="Write the map (png, pdf, svg).")
-def command(file: Path, is_gap: bool, as_json: bool, plot: Path | None, **given: str | None) -> None:
+def command(file: Path, is_gap: bool, as_json: bool, plot: Path | None, **given: Any) -> None:
     """Flatness, crowns and twist of the form in FILE: a list of points x, y, z (csv, txt, dat, xyz, asc) or a scan."""
     from faying.form import fit as drawing
     from faying.form.fit import fit_form
@@ -30,7 +30,7 @@ def command(file: Path, is_gap: bool, as_json: bool, plot: Path | None, **given:
         check_ending(plot)
     if not file.is_file():
         raise ReadError(f"no file {file}")
-    fit = fit_form(*read_heights(file, **given), is_gap=is_gap)
+    fit = fit_form(*read_heights(file, is_gap=is_gap, **given), is_gap=is_gap)
     if plot:
         save(drawing.figure(fit, file.name), plot)
     if as_json:

@@ -294,6 +294,8 @@ def pair_of(options: dict[str, Any], *, needed: bool) -> ContactPair:
         rough = material_of(options["material"])
         if "yield_strength" in given and "hardness" not in given:
             given["hardness"] = None
+        if {"yield_strength", "hardness"} & set(given):
+            given |= {"brinell": None, "vickers": None}  # else laws that take a hardness for each size of spot have it
         rough = replace(rough, **given)
     against = options["against"]
     return ContactPair(rough, rough if against == "same" else against)
