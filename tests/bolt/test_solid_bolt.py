@@ -9,6 +9,7 @@ import faying
 from faying.bolt.solid_bolt import SolidBolt
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
+from faying.fe.stress import part_stresses
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.structure import Structure
@@ -42,6 +43,36 @@ def structure(mesh, bolts=1, **changes):
 @pytest.fixture(scope="module")
 def single():
     return bolted(kind="hex8")
+
+
+def structure_strained(mesh):
+    """What strains the parts where the plane of the bolt lies half-way between its faces (unknowns, 1)."""
+    made = structure(mesh)
+    return made.strained(tighten(made, made.assembly(), [5e3]))[:, None]
+
+
+def test_the_loss_of_one_joint_is_not_that_of_a_mode(single):
+    """With a law that gives none in the other joints a mode has no loss factor, and damping at rest its prior."""
+    made = structure(single)
+    lossy = faying.JK(D=2.39, G=1.53e-10, scan_area=16e-6, pair=faying.ContactPair("45 steel", "45 steel"))
+    joints = [replace(made.joints[0], law=JointLaw(model=lossy)), *made.joints[1:]]
+    for some, known in ((joints, False), ([replace(one, law=joints[0].law) for one in joints], True)):
+        mixed = replace(made, joints=some)
+        assert mixed.predicts_loss is known
+        assert np.isfinite(mixed.solve(5e3, modes=2).modes.loss_factors).all() == known
+
+
+@pytest.mark.parametrize("height", [12.5e-3, 17.5e-3])
+def test_the_shank_bears_its_tension_wherever_it_is_drawn_in(single, height):
+    """F/A in the middle, and nowhere much more; the layer that is drawn in had some 40 times of it."""
+    made = structure(single, at=(0.02, 0.02, height))
+    strained = made.strained(tighten(made, made.assembly(), [5e3]))
+    found = part_stresses(single, made.materials, strained[:, None])["bolt0"]
+    z = single.points[found.nodes, 2]
+    assert found.von_mises.max() < 1.2 * 5e3 / 16e-6
+    assert np.mean(found.stress[np.abs(z - 10e-3) < 1e-6, 2, 0]) == pytest.approx(5e3 / 16e-6, rel=0.01)
+    whole = part_stresses(single, made.materials, structure_strained(single))["bolt0"]
+    np.testing.assert_allclose(found.von_mises, whole.von_mises, rtol=1e-5, atol=1e-6 * whole.von_mises.max())
 
 
 def squeezed(made, found):

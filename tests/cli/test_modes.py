@@ -74,7 +74,9 @@ def test_matrix_market_with_units(exported, capsys, tmp_path):
 def test_faults(exported, capsys, tmp_path):
     out, study = exported / "out", str(exported / "study.toml")
     assert "give either a study or --stiffness" in fault(capsys, ["modes"])
-    assert "--mass is for --stiffness" in fault(capsys, ["modes", study, "--mass", str(out / "mass.npz")])
+    assert "--mass: for --stiffness; a study has its own" in fault(
+        capsys, ["modes", study, "--mass", str(out / "mass.npz")]
+    )
     assert "name the mass too" in fault(capsys, ["modes", "--stiffness", str(out / "stiffness.npz")])
     (tmp_path / "bad.npz").write_bytes(b"no zip")
     both = ["modes", "--stiffness", str(tmp_path / "bad.npz"), "--mass", str(out / "mass.npz")]
@@ -88,3 +90,22 @@ def test_faults(exported, capsys, tmp_path):
     assert "brings its mass with it" in fault(capsys, two)
     (tmp_path / "file").write_text("")
     assert "cannot make the folder" in fault(capsys, ["modes", study, "--export", str(tmp_path / "file" / "x")])
+
+
+ATTACH = ["attach", "m.inp", "--face-a", "A", "--face-b", "B", "--unit", "mm", "--law", "s.toml", "--to", "abaqus"]
+
+
+@pytest.mark.parametrize(
+    ("argv", "said"),
+    [
+        ([*ATTACH, "--pressure", "5 MPa", "--preload", "8 kN"], "--preload: with --pressure solve alone"),
+        ([*ATTACH, "--pressure", "5 MPa", "--mass", "m.mtx", "--modes", "3"], "--mass, --modes: with --matrices alone"),
+        (["modes", "s.toml", "--stiffness-unit", "N/mm"], "--stiffness-unit: for --stiffness; a study has its own"),
+        (["condense", "s.toml", "--superelement", "--element", "7"], "--element: of one joint; a superelement has"),
+        (["condense", "s.toml", "--interface", "top"], "--interface: of a superelement; add --superelement"),
+        (["condense", "s.toml", "--unit", "mm"], "--unit: of a deck that has units and numbers"),
+    ],
+)
+def test_options_without_effect_are_refused(argv, said, capsys):
+    """They were taken without a word: a preload that the study has not, files that are not there."""
+    assert said in fault(capsys, argv)

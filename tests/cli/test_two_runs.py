@@ -54,7 +54,7 @@ def test_one_preload_as_json_and_files(files, tmp_path, capsys):
         (("--load", "5 kN"), "the first run has no such preload; it has 2 kN, 8 kN"),
         (
             ("--tolerance", "5 mm", "--least-mac", "0.8"),
-            "--tolerance, --least-mac: for a hammer test alone; leave it out",
+            "--tolerance, --least-mac: for a hammer test alone, where two results are compared; leave it out",
         ),
     ],
 )

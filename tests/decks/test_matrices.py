@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.io import mmwrite
+from scipy.sparse import diags_array
 
 import faying
 from faying.decks.matrices import arranged, read_matrices
@@ -351,7 +352,23 @@ def test_total_mass(model):
     from faying.decks.matrices import total_mass
 
     _, M, dofs = model[2]
-    assert total_mass(M, dofs) == pytest.approx(np.full(3, 7800 * 0.04 * 0.02 * 0.01 * 1e-3), rel=1e-12)
+    whole = np.full(3, 7800 * 0.04 * 0.02 * 0.01 * 1e-3)
+    assert total_mass(M, dofs) == pytest.approx(whole, rel=1e-12)
+
+
+def test_the_mass_along_what_a_support_holds_is_not_known(model):
+    """A support takes rows of the mass with it: what was left came out as the mass along z."""
+    from faying.decks.matrices import total_mass
+
+    K, M, dofs = model[2]
+    whole = total_mass(M, dofs, K)
+    assert np.all(np.isfinite(whole))
+    free = ~((dofs[:, 1] == 3) & (dofs[:, 0] <= np.unique(dofs[:, 0])[3]))
+    keep = diags_array(free.astype(float)).tocsr()
+    held = keep @ K @ keep + diags_array(np.where(free, 0.0, K.diagonal())).tocsr()
+    found = total_mass(keep @ M @ keep, dofs, held)
+    assert found[:2] == pytest.approx(whole[:2], rel=1e-12)
+    assert np.isnan(found[2])
 
 
 def test_masses_that_differ_along_the_axes_are_refused(model, tmp_path):

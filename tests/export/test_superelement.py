@@ -269,6 +269,17 @@ def test_an_fmu_has_no_units_of_its_own(found, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("program", ["nastran", "npz"])
+def test_one_interface_of_a_free_structure_is_read_back(file, full, program, tmp_path):
+    """Its static shape is a rigid motion, whose stiffness is rounding about 0."""
+    made = superelement(file, PLACES[1:2], up_to=UP_TO, preload="2 kN")
+    files = made.write(program, tmp_path)
+    stiffness = next(one for one in files if "dmig" in one.name or one.name.startswith("stiffness"))
+    mass = next((one for one in files if one.name.startswith("mass")), None)
+    found = faying.matrix_modes(stiffness, mass, count=20)
+    same_below(found.frequencies, full[0], UP_TO)
+
+
 def test_the_command(file, tmp_path, capsys):
     given = ["condense", str(file), "--superelement", "--interface", "upper.seat", "--preload", "2 kN"]
     given += ["--interface", '{part = "lower", normal = "-x"}', "--interface", "40 mm; 15 mm; 15 mm"]

@@ -82,6 +82,8 @@ def test_a_bolt_without_a_seat_presses_from_its_hole_to_its_head():
     assert not structure(mesh, bolt(seat=(2 * INNER, 12e-3))).notes
     bare = bolt(diameter=None, material=None).fitted(mesh)
     assert bare.ring == pytest.approx((2 * INNER, 1.5 * 2 * INNER / 1.1), rel=1e-9)
+    thinned = bolt(diameter=6.5e-3, thread="M8").fitted(mesh)
+    assert thinned.ring == pytest.approx(chosen.ring, rel=1e-9)  # the head is that of an M8
 
 
 def test_seats_are_where_the_axis_meets_the_faces_and_reach_from_the_hole_to_the_rim():

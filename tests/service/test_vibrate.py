@@ -9,8 +9,11 @@ from scipy.integrate import quad
 from scipy.linalg import eigh, solve
 
 import faying
+from faying.case.level_damping import rest_damping
 from faying.fe.stress import part_stresses
 from faying.joint.attachments import Support
+from faying.numerics.constraint import constrain
+from faying.numerics.damped import damped_modes
 from faying.service.excited import Excited, twins_along
 from tests.helpers.bars import SIMPLE, bars
 
@@ -36,6 +39,17 @@ def matrices(structure, springs):
     M = structure.inertia(whole)
     free = np.setdiff1d(np.arange(len(K)), structure.fixed)
     return K, M, free
+
+
+def test_a_loss_of_the_parts_is_damping_at_rest(state):
+    """That of the complex modes of K (1 + i eta), eta on the parts alone; or the prior, which is of all that damps."""
+    structure, found = state.structure, state.vibration
+    count, eta = len(found.damped.frequencies), 0.05
+    parts = constrain(structure.matrices[0], structure.fixed, 0.0)
+    mass = structure.dynamic_matrices[1]
+    lossy = damped_modes(found.modes, found.stiffness, mass, eta * parts, rigid=structure.rigid_count, count=count)
+    np.testing.assert_allclose(rest_damping(structure, found, eta), np.tile(lossy.loss_factors / 2, (3, 1)), rtol=1e-3)
+    np.testing.assert_allclose(rest_damping(structure, found, 1e-5)[1], REST)
 
 
 @pytest.mark.parametrize("direction", [(1, 0, 0), (0, 1, 2)])

@@ -48,6 +48,17 @@ def test_a_table_is_the_law_in_the_units_of_the_model():
     assert max(map(len, text.splitlines())) < 80
 
 
+def test_friction_sticks_with_the_stiffness_of_the_pressure_that_is_given():
+    """It was that of the middle of the table, whatever the pressure."""
+    for pressure in (1e6, 20e6):
+        text = law_tables(LAW, "calculix", unit="mm", pressure=pressure)
+        shear = float(re.search(r"\*FRICTION\n0.2,(\S+)", text)[1])
+        assert shear == pytest.approx(1e-9 * float(JointLaw(model=LAW).stiffness(np.array([pressure]))[1][0]))
+        assert f"friction sticks with k_t at {pressure / 1e6:g} N/mm2" in text
+    with pytest.raises(faying.InputError, match="at most 1e.08"):
+        law_tables(LAW, "calculix", unit="mm", pressure="5 GPa")
+
+
 def test_abaqus_has_its_own_words_for_sticking_and_pressure():
     text = law_tables(LAW, "abaqus", unit="m", name="FLANGE", friction=0.1)
     assert "*SURFACE INTERACTION,NAME=FLANGE" in text

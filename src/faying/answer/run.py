@@ -295,7 +295,7 @@ def _dowels(structure: Structure, states: Sequence[LoadedCase]) -> dict[str, Any
 
 def _stress(structure: Structure, states: Sequence[LoadedCase], nodes: Index) -> dict[str, Any]:
     """Fields of the result that say what the preload does to the parts, and to these nodes of the outer surface."""
-    moved = np.stack([s.preload.displacement for s in states], axis=1)
+    moved = np.stack([structure.strained(s.preload) for s in states], axis=1)
     found = part_stresses(structure.mesh, structure.materials, moved)
     size, place, spread = greatest_stresses(found, structure.mesh.points)
     outer = at_outline(found, len(structure.mesh.points), nodes)

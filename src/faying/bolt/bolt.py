@@ -145,7 +145,7 @@ class Bolt:
         shank: Length [m] of the plain shank under the head, 0 for a bolt that is threaded up to its head. Where None: 0
             for a shank as thick as the thread; else, for a reduced shank, up to where the thread engages.
         head: "hexagon" or "socket".
-        friction: Coefficients of friction in the thread and under the head; for the bolt sheet alone.
+        friction: Coefficients of friction in the thread and under the head; for sheet and loosening alone.
 
     Raises:
         InputError: Diameter without material or the other way round, a diameter of 0 or less, a ring without width,
@@ -238,6 +238,11 @@ class Bolt:
             return self.thread if self.fastener is None else self.fastener.thread
         covered = self.diameter is not None and THINNEST <= self.diameter <= THICKEST
         return Thread.near(self.diameter) if covered and self.diameter is not None else None
+
+    @property
+    def size(self) -> float | None:
+        """Diameter [m] of the thread, by which heads and nuts are made; that of the shank where there is none."""
+        return self.diameter if self.metric is None else self.metric.diameter
 
     def fitted(self, mesh: Mesh, materials: Mapping[str, Solid] | None = None) -> "FittedBolt":
         """Return the bolt in its place on a mesh.
@@ -338,7 +343,7 @@ class Bolt:
                 f"bolt {self.name!r}: the face {first!r} under its head is {show(-free, 'm')} below the mouth of the "
                 f"tapped hole {second!r}; check which faces they are"
             )
-        diameter = self.diameter or 2 * hole.radius
+        diameter = self.size or 2 * hole.radius
         engaged = engaged_length(self.engaged, hole, diameter, self.name)
         ring = self._seat(self._hole(mesh, (first,), hole.point, hole.axis), alone=False)
         return BoltPlace(
@@ -381,7 +386,7 @@ class Bolt:
         """The widest hole [m] that head and nut can lie on; infinite where neither seat nor diameter says it."""
         if self.seat is not None:
             return self.seat[1]
-        return ACROSS_FLATS * self.diameter if self.diameter else np.inf
+        return ACROSS_FLATS * self.size if self.size else np.inf
 
     @property
     def stated_ring(self) -> tuple[float, float] | None:
@@ -400,7 +405,7 @@ class Bolt:
         if alone:
             return None
         inner = 0.0 if hole is None else 2 * hole.radius
-        size = self.diameter or inner / CLEARANCE
+        size = self.size or inner / CLEARANCE
         if inner and inner >= ACROSS_FLATS * size:
             raise InputError(
                 f"bolt {self.name!r}: a head of {show(ACROSS_FLATS * size, 'm')} across flats falls through its hole "
@@ -566,8 +571,8 @@ class FittedBolt(BoltPlace):
         bolt = self.bolt
         if bolt.diameter is None or bolt.material is None:
             return None
-        density, d = bolt.material.density or 0.0, bolt.diameter
-        shank = density * pi / 4 * d**2 * self.length
+        density, d = bolt.material.density or 0.0, bolt.size or bolt.diameter
+        shank = density * pi / 4 * bolt.diameter**2 * self.length
         hexagon = density * HEXAGON * (ACROSS_FLATS * d) ** 2
         head = hexagon * HEAD_HEIGHT * d if bolt.head_mass is None else bolt.head_mass
         # the part of the bolt in the nut fills its thread, so the nut counts as solid

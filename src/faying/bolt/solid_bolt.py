@@ -29,6 +29,7 @@ class SolidBolt:
         faces: Faces of the bolt itself under its head and under its nut, or round its thread.
         at: A point (3,) [m] of the plane in which the shank is drawn in; half-way between the faces where None.
         fastener: Thread and property class, from which its proof load follows; None where they are not known.
+        friction: Coefficients of friction in the thread and under the head; for sheet and loosening alone.
     """
 
     name: str
@@ -36,6 +37,7 @@ class SolidBolt:
     faces: tuple[str, str]
     at: tuple[float, float, float] | None = None
     fastener: Fastener | None = None
+    friction: tuple[float | None, float | None] | None = None
     diameter: ClassVar[None] = None  # it has no shank but that of the mesh
 
     def fitted(self, mesh: Mesh, stiffness: Any, joined: Sequence[str] = ()) -> "FittedSolidBolt":
@@ -144,6 +146,10 @@ class FittedSolidBolt:
     def stiffness(self) -> Any:
         """What the tight bolt gives back [N/m]: `released`."""
         return self.released
+
+    def drawn_in(self, displacement: Array, force: float) -> Array:
+        """How far the far half is drawn in, a v [m] (unknowns,), at a displacement under a force [N] of the bolt."""
+        return np.asarray((force - self.tension(displacement)) / self.rigidity * self.drawn)
 
     @property
     def mass(self) -> None:

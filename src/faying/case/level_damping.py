@@ -53,7 +53,7 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> Levels
         return level_model(structure, preload, basis, laws).at(choice.levels, choice.count)
 
     middle = at(middle_laws)
-    rest, moved = rest_damping(structure, found), moved_by_loss(structure, found)
+    rest, moved = rest_damping(structure, found, case.study.parts_loss), moved_by_loss(structure, found)
     slip = least = most = middle.damping
     if assumed:
         ends = [at(coarse[0]).damping, np.zeros_like(slip)]
@@ -84,11 +84,17 @@ def laws_at(structure: BoltedStructure, preload: PreloadState, friction: float, 
     return cut_laws(structure, preload, given, springs)
 
 
-def rest_damping(structure: BoltedStructure, found: Vibration) -> Array:
-    """Damping ratio at rest [-] (3, m), 5 %, median and 95 %: what the laws predict, or else its prior."""
+def rest_damping(structure: BoltedStructure, found: Vibration, parts_loss: float = 0.0) -> Array:
+    """Damping ratio at rest [-] (3, m), 5 %, median and 95 %: of laws and parts, or where laws give none, its prior.
+
+    The prior is of all that damps a structure: where the loss factor of the parts [-] makes more, that is taken.
+    """
+    speeds = 2 * np.pi * found.damped.frequencies
+    own = found.modes.shapes[:, structure.rigid_count :][:, : len(speeds)]
+    of_parts = parts_loss / 2 * np.einsum("im,im->m", own, structure.matrices[0] @ own) / speeds**2
     if structure.predicts_loss:
-        return np.tile(found.damped.loss_factors / 2, (3, 1))
-    return np.tile(np.array(REST)[:, None], (1, len(found.damped.frequencies)))
+        return np.tile(found.damped.loss_factors / 2 + of_parts, (3, 1))
+    return np.asarray(np.maximum(np.array(REST)[:, None], of_parts))
 
 
 def moved_by_loss(structure: BoltedStructure, found: Vibration) -> Array:
@@ -127,6 +133,7 @@ def level_notes(case: Case, found: Sequence[Levels | None], lossless: bool) -> l
     if any(one is None for one in found):
         return [Note(code="no-level-damping", text=_why_none(case))]
     notes = _unanswered(case, [one for one in found if one is not None])
+    lossless = lossless and case.study.parts_loss / 2 < REST[2]
     words = assumed_words(friction=assumes_friction(case.structure), rest=lossless)
     if not words:
         return notes

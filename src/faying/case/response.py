@@ -82,9 +82,7 @@ class LoadedStructure:
         self, frequencies: Array, outputs: tuple[Array, Array], inputs: tuple[Array, Array], more: Array | None = None
     ) -> FrequencyResponse:
         """The response at points, and of what the columns of `more` (unknowns, k) read of a displacement."""
-        spec = self.study.response
-        eta = 0.0 if spec is None else spec.structural_loss
-        own = self.found
+        eta, own = self.study.parts_loss, self.found
         vibration = ForcedVibration(
             stiffness=own.stiffness,
             mass=self.structure.dynamic_matrices[1],

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from faying.cli.options import PATH
+from faying.cli.options import PATH, refuse_given
 from faying.decks.programs import SOLVERS
 from faying.errors import InputError
 from faying.text import json_text
@@ -92,6 +92,10 @@ def command(
 
     if solver is None and matrices is None:
         raise InputError(f"nothing to do: name a solver with --to ({', '.join(SOLVERS)}), or matrices with --matrices")
+    if matrices is None:
+        refuse_given({"mass", "dofs", "stiffness_unit", "mass_unit", "count"}, "with --matrices alone")
+    if options["pressure"] != "solve":
+        refuse_given({"preload"}, "with --pressure solve alone")
     made = attach(model, (face_a, face_b), study=law, **options)
     document = made.to_dict()
     files: list[Path] = []

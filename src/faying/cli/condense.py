@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from faying import units
-from faying.cli.options import PATH, show
+from faying.cli.options import PATH, refuse_given, show
 from faying.cli.progress import Form, Shown, progress_options
 from faying.decks.programs import CONDENSED, IN_SI, REDUCED
 from faying.errors import InputError
@@ -69,10 +69,14 @@ def command(
 
     if solver not in (None, *IN_SI) and unit is None:
         raise InputError('--to needs --unit, the unit of length of that model, such as "mm"')
-    if whole and (joint or point_a or point_b):
-        raise InputError("--joint, --point-a and --point-b are of one joint; a superelement has --interface")
-    if not whole and (interfaces or up_to):
-        raise InputError("--interface and --up-to are of a superelement; add --superelement")
+    if whole:
+        of_joint = {"joint", "point_a", "point_b", "node_b", "element"}
+        refuse_given(of_joint, "of one joint; a superelement has --interface")
+    else:
+        refuse_given({"interfaces", "up_to"}, "of a superelement; add --superelement")
+    if solver in (None, *IN_SI):
+        of_deck = {"unit", "force_unit", "node_a", "node_b", "element"}
+        refuse_given(of_deck, "of a deck that has units and numbers (--to)")
     plan = Study.read(study)
     folder, system = out or plan.folder / "joint", {"unit": unit or "m", "force_unit": force_unit}
     if whole:

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from faying import units
-from faying.cli.options import PATH
+from faying.cli.options import PATH, refuse_given
 from faying.errors import InputError
 from faying.text import json_text
 
@@ -45,8 +45,7 @@ def command(
     if (study is None) == (stiffness is None):
         raise InputError("give either a study or --stiffness and --mass, for example faying modes study.toml")
     if study is not None:
-        if mass is not None:
-            raise InputError("--mass is for --stiffness; a study has its own")
+        refuse_given({"mass", "stiffness_unit", "mass_unit"}, "for --stiffness; a study has its own")
         given = Assembled.of_study(Study.read(study))
     else:
         assert stiffness is not None

@@ -1,10 +1,11 @@
 """What several commands share."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from faying import checks, units
 from faying.errors import InputError
@@ -25,6 +26,18 @@ class NamedPath(click.Path):
 
 PATH = NamedPath(path_type=Path)
 FILE = NamedPath(dir_okay=False, path_type=Path)
+
+
+def refuse_given(names: Collection[str], why: str) -> None:
+    """Raise InputError where parameters of the command that have no effect were given; why: what they are for."""
+    context = click.get_current_context()
+    given = [
+        parameter.opts[0]
+        for parameter in context.command.params
+        if parameter.name in names and context.get_parameter_source(parameter.name) is ParameterSource.COMMANDLINE
+    ]
+    if given:
+        raise InputError(f"{', '.join(given)}: {why}; leave it out")
 
 
 def show(

@@ -14,6 +14,7 @@ from faying.file_kinds import MARKET, SPARSE, kind_of
 from faying.misuse import checked_call
 from faying.typing import Array, Index
 
+RESISTED = 1e-7  # of the energy of a translation without signs: digits that a file leaves out
 ALONE = (MARKET, SPARSE)  # files of one matrix, without its nodes
 SYMMETRIC = 1e-8  # largest difference from the transpose, relative to the largest entry
 
@@ -63,13 +64,17 @@ def read_matrices(
     return (K * scales[0]).tocsr(), (M * scales[1]).tocsr(), table
 
 
-def total_mass(mass: Any, dofs: Index) -> Array:
+def total_mass(mass: Any, dofs: Index, stiffness: Any = None) -> Array:
     """Total mass along x, y and z (3,), in the unit of the matrix: what a motion of all nodes as one meets.
 
-    NaN along what no unknown is said to move in.
+    NaN along what no unknown is said to move in, and where the stiffness resists it: supports take mass with them.
     """
     moved = (dofs[:, 1:] == np.array([1, 2, 3])).astype(float)
-    return np.where(moved.any(axis=0), np.einsum("ij,ij->j", moved, mass @ moved), np.nan)
+    known = moved.any(axis=0)
+    if stiffness is not None:
+        energy, own = (np.einsum("ij,ij->j", moved, K @ moved) for K in (stiffness, abs(stiffness)))
+        known &= energy <= RESISTED * own
+    return np.where(known, np.einsum("ij,ij->j", moved, mass @ moved), np.nan)
 
 
 def _check_mass(name: str, M: Any, dofs: Index) -> None:
@@ -236,7 +241,10 @@ def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
     if np.any(count > 1):
         node, axis = pairs[count > 1][0]
         raise InputError(f"{name}: node {node} direction {axis} is listed twice")
-    for what, bad in (("stiffness", K.diagonal() <= 0), ("mass", M.diagonal() < 0)):
+    own = K.diagonal()
+    # a motion of a reduced model that nothing resists has a stiffness of 0, of either sign by rounding
+    none = (own <= 0) & ((M.diagonal() <= 0) | (abs(K).sum(axis=0) == 0)) | (own < -SYMMETRIC * abs(K).max())
+    for what, bad in (("stiffness", none), ("mass", M.diagonal() < 0)):
         if np.any(bad):
             node, axis = dofs[bad][0]
             raise InputError(
@@ -248,7 +256,8 @@ def _check(name: str, K: Any, M: Any, dofs: Index) -> None:
     for what, A in (("stiffness", K), ("mass", M)):
         # no entry of a matrix that costs or stores energy is greater than the mean of its two diagonals
         entries, diagonal = A.tocoo(), A.diagonal()
-        too_large = entries.data**2 > (1 + SYMMETRIC) * diagonal[entries.row] * diagonal[entries.col]
+        allowed = diagonal[entries.row] * diagonal[entries.col] + (SYMMETRIC * abs(A).max()) ** 2
+        too_large = entries.data**2 > (1 + SYMMETRIC) * allowed
         if np.any(too_large):
             (a, b), (c, d) = dofs[entries.row[too_large][0]], dofs[entries.col[too_large][0]]
             raise InputError(

@@ -22,11 +22,16 @@ METALS = "clean metal in vacuum; films hinder the flow, gas and grease help it"
 
 @dataclass(frozen=True, kw_only=True)
 class _Table:
-    """What both programs get, in the units of the model: closure and conductance over pressure, and friction."""
+    """What both programs get, in the units of the model: closure and conductance over pressure, and friction.
+
+    secant, shear: pressure over closure, and k_t, at one pressure `at`.
+    """
 
     pressure: Array
     closure: Array
     conductance: Array | None
+    at: float
+    secant: float
     shear: float
     friction: float | None
 
@@ -39,6 +44,7 @@ def law_tables(
     force_unit: str = "N",
     name: str = "JOINT",
     friction: float | None = None,
+    pressure: float | str | None = None,
 ) -> str:
     """Write a contact law as the contact properties of another program.
 
@@ -53,6 +59,8 @@ def law_tables(
         unit, force_unit: Of the model, such as "mm" and "N".
         name: Of the interaction.
         friction: Coefficient of friction [-], 0 to 10; that of the materials where None and they have one.
+        pressure: Where what has one number in the deck is taken [Pa], or text with a unit: the stiffness of sticking,
+            and the secant of the closure; within the table, its middle where None.
 
     Returns:
         The text.
@@ -67,7 +75,7 @@ def law_tables(
     system = UnitSystem(unit, force_unit)
     if friction is not None:
         friction = number(friction, "friction", least=0, greatest=10, ends="[]")
-    table = _table(law, system, friction)
+    table = _table(law, system, friction, pressure)
     head = [
         f"{law.name}: {law.source}",
         f"on first loading; valid where: {law.validity}",
@@ -77,16 +85,22 @@ def law_tables(
         head.append("*CONTACT PAIR needs TYPE=NODE TO SURFACE: from surface to surface such a table carries nothing")
     if table.conductance is not None:
         head.append(f"conductance: {METALS}")
+    if table.friction is not None:
+        head.append(f"friction sticks with k_t at {table.at:.4g} {force_unit}/{unit}2")
     return _keywords(table, head, name, program)
 
 
-def _table(law: ContactLaw, system: UnitSystem, friction: float | None) -> _Table:
+def _table(law: ContactLaw, system: UnitSystem, friction: float | None, pressure: float | str | None) -> _Table:
     joint = JointLaw(model=law)
     joint.check()
     last = min(LAST, law.greatest_pressure * (1 - 1e-12))
     p = np.geomspace(max(joint.least_pressure, min(FIRST, 1e-3 * last)), last, POINTS)
-    k_n, k_t = joint.stiffness(p, tabulated=True)
-    middle = len(p) // 2
+    k_n, _ = joint.stiffness(p, tabulated=True)
+    at = (
+        float(p[len(p) // 2])
+        if pressure is None
+        else number(pressure, "pressure", "Pa", least=p[0], greatest=p[-1], ends="[]")
+    )
     pair = getattr(law, "pair", None)
     conductance = None
     if isinstance(pair, ContactPair):
@@ -99,7 +113,9 @@ def _table(law: ContactLaw, system: UnitSystem, friction: float | None) -> _Tabl
         pressure=p * system.pressure,
         closure=np.array([joint.approach(float(one)) for one in p]) * system.metre,
         conductance=conductance,
-        shear=float(k_t[middle]) * system.density,
+        at=at * system.pressure,
+        secant=at / joint.approach(at) * system.density,
+        shear=float(joint.stiffness(np.array([at]))[1][0]) * system.density,
         friction=friction,
     )
 
@@ -109,20 +125,19 @@ def _keywords(table: _Table, head: list[str], name: str, program: str) -> str:
     lines = [f"** {line}" for text in head for line in wrap(text, WIDTH)]
     lines += [f"*SURFACE INTERACTION,NAME={name}", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TABULAR", "0.,0."]
     lines += [f"{p:.9e},{w:.9e}" for p, w in zip(table.pressure, table.closure, strict=True)]
-    calculix, middle = program == "calculix", len(table.pressure) // 2
+    calculix = program == "calculix"
     if table.friction is not None:  # Abaqus has no stiffness of sticking, but the slip at which friction is reached
-        slip = table.friction * table.pressure[middle] / table.shear
+        slip = table.friction * table.at / table.shear
         lines.append("*FRICTION" if calculix else f"*FRICTION,ELASTIC SLIP={slip:.9e}")
         lines.append(f"{table.friction},{table.shear:.9e}" if calculix else f"{table.friction}")
     if table.conductance is None:
         return "\n".join(lines) + "\n"
     if calculix:
-        slope = table.pressure[middle] / table.closure[middle]
-        lines += [f"** heat alone, with TYPE=SURFACE TO SURFACE: closure by its secant at {table.pressure[middle]:.4g}"]
+        lines += [f"** heat alone, with TYPE=SURFACE TO SURFACE: closure by its secant at {table.at:.4g}"]
         lines += [
             f"*SURFACE INTERACTION,NAME={name}_HEAT",
             "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR",
-            f"{slope:.9e}",
+            f"{table.secant:.9e}",
         ]
     lines.append("*GAP CONDUCTANCE" if calculix else "*GAP CONDUCTANCE,PRESSURE")
     lines += [f"{h:.9e},{p:.9e}" for h, p in zip(table.conductance, table.pressure, strict=True)]

@@ -192,7 +192,7 @@ def modes_of(given: Assembled, count: int, shift: float) -> MatrixModes:
         frequencies=modes.frequencies,
         shapes=modes.shapes,
         dofs=given.dofs,
-        mass=total_mass(given.mass, given.dofs),
+        mass=total_mass(given.mass, given.dofs, given.stiffness),
         missed=missed_modes(given.stiffness, given.mass, modes),
         solver=modes.factorisation.name,
         factor_memory=modes.factorisation.memory,

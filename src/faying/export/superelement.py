@@ -216,8 +216,8 @@ def superelement(
     names, points, rows, dofs = _interfaces(structure, places)
     progress.begin("modes")
     (K, loss), M = structure.coupled(springs), structure.dynamic_matrices[1]
-    if study.response is not None:
-        loss = loss + study.response.structural_loss * constrain(structure.matrices[0], structure.fixed, 0.0)
+    if study.parts_loss:
+        loss = loss + study.parts_loss * constrain(structure.matrices[0], structure.fixed, 0.0)
     frequency, rigid = case.shift_frequency, case.rigid_count
     shift = (2 * np.pi * frequency) ** 2
     factor = factorise((K + shift * M).tocsr(), study.modes.solver)

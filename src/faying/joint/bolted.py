@@ -22,7 +22,7 @@ from faying.joint.attachments import PointMass, Support
 from faying.joint.equilibrium import PreloadState
 from faying.joint.figure import Fastening, structure_axes
 from faying.joint.joint import FittedJoint, Joint, each_pair_once, known_face
-from faying.joint.joint_law import JointLaw
+from faying.joint.joint_law import JointLaw, all_predict_loss
 from faying.joint.loaded_before import loaded_before
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
@@ -163,10 +163,18 @@ class BoltedStructure(Summary):
         """What a displacement adds to the force of each bolt (bolts, unknowns) [N/m]; 0 for a bolt without a shank."""
         return np.array([bolt.pull for bolt in self.fitted_bolts]).reshape(-1, self.mesh.unknowns)
 
+    def strained(self, preload: PreloadState) -> Array:
+        """What strains the parts under a preload [m] (unknowns,): its motion, and how far meshed bolts are drawn in."""
+        u = preload.displacement
+        pairs = zip(self.fitted_bolts, preload.bolt_forces, strict=True)
+        return np.asarray(
+            u + sum(bolt.drawn_in(u, force) for bolt, force in pairs if isinstance(bolt, FittedSolidBolt))
+        )
+
     @property
     def predicts_loss(self) -> bool:
-        """Whether the law of any joint gives a loss factor."""
-        return any(joint.law.predicts_loss for joint in self.joints)
+        """Whether the laws of all joints give a loss factor."""
+        return all_predict_loss([joint.law for joint in self.joints])
 
     @property
     def loads(self) -> Array:

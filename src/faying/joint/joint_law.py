@@ -1,5 +1,6 @@
 """A contact law laid on a joint: pressure from approach, and stiffness and loss at every point from its pressure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, Self
@@ -296,3 +297,8 @@ class JointLaw:
     def approach(self, pressure: float) -> float:
         """Closing [m] at one pressure [Pa] between the least and the greatest of the law."""
         return float(self._curve.approach(np.asarray(pressure)))
+
+
+def all_predict_loss(laws: Sequence[JointLaw]) -> bool:
+    """Whether all laws of a structure, one or more, give a loss factor: that of some of them is not that of a mode."""
+    return bool(laws) and all(law.predicts_loss for law in laws)

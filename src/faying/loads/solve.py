@@ -240,7 +240,7 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         pressure=np.array([np.concatenate(one) for one in pressures]),
         shear=np.array(shears),
         **_dowels(structure, motions),
-        **_stress(structure, base.preload.displacement, motions, [acts[load.name].strains for load in loads]),
+        **_stress(structure, structure.strained(base.preload), motions, [acts[load.name].strains for load in loads]),
         notes=(*base.notes, *load_notes(structure, contacts, [load.name for load in loads], pressures, arrays)),
         provenance=base.provenance,
         cycles=np.array([load.cycles for load in loads]),

@@ -245,8 +245,8 @@ class Measure:
 
     def guessed(self, left: Array, size: Array, which: Index) -> Array:
         """Energies over sizes (k,) of residuals (n, k), by the diagonal; which (k,): their numbers."""
-        typical = np.median(self._ratio)
-        return np.asarray(DOUBT * np.maximum(self._ratio[which], typical) * self._rough(left, size))
+        rough, most = self._rough(left, size), np.maximum(self._ratio[which], np.median(self._ratio))
+        return np.asarray(DOUBT * np.multiply(most, rough, out=np.zeros_like(rough), where=rough > 0))
 
     def solved(self, left: Array, size: Array, which: Index) -> tuple[Array, Array]:
         """Energies over sizes (k,) of residuals (n, k), one or more, and the solutions (n, k)."""

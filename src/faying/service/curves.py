@@ -60,6 +60,7 @@ def curve_sets(
     found: Vibration,
     needs: Sequence[Callable[[ModeCurve], float]],
     greatest: Array,
+    parts_loss: float = 0.0,
 ) -> CurveSets:
     """March the modes of a structure.
 
@@ -69,8 +70,9 @@ def curve_sets(
         found: Its modes at rest.
         needs: Of each elastic mode (m), the amplitude of its coordinate up to which its curve is wanted.
         greatest: Displacement of the node that moves most in each mode [kg^-1/2] (m,).
+        parts_loss: Loss factor of the parts themselves [-].
     """
-    rest = rest_damping(structure, found)
+    rest = rest_damping(structure, found, parts_loss)
     speeds = 2 * np.pi * found.damped.frequencies
     plain = tuple(ModeCurve(speed=float(w), rest=float(z)) for w, z in zip(speeds, rest[1], strict=True))
     slips = bool(structure.joints) and not any(joint.per_node for joint in structure.joints)

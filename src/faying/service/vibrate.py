@@ -44,6 +44,7 @@ class Shaken:
         structure, preload, springs, found: The structure, its equilibrium, the springs of its joints, its modes.
         bolts: What friction and fatigue need of each bolt.
         provenance: What it was made from.
+        parts_loss: Loss factor of the parts themselves [-].
     """
 
     title: str
@@ -53,6 +54,7 @@ class Shaken:
     found: Vibration
     bolts: Sequence[ServiceBolt]
     provenance: Provenance
+    parts_loss: float = 0.0
 
     @property
     def forces(self) -> Array:
@@ -87,7 +89,7 @@ def vibrate(base: Shaken, excitation: Excitation) -> VibrationResponse:
     excited = Excited.of(base.structure, base.springs, base.found, excitation)
     elastic = slice(excited.rigid, None)
     needs = [partial(_needed, excitation, float(abs(force))) for force in excited.force[elastic]]
-    sets = curve_sets(base.structure, base.preload, base.found, needs, excited.greatest[elastic])
+    sets = curve_sets(base.structure, base.preload, base.found, needs, excited.greatest[elastic], base.parts_loss)
     lines = _lines(excitation, sets.best)
     given = _Answering(base=base, excited=excited, stress=_stress(base.structure), lines=lines)
     answer = partial(_random if excitation.kind == "random" else _sine, given)
@@ -423,7 +425,7 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
     if np.any(found.get("jumps", np.zeros(1)) > 0):
         text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
         yield Note(code="vibration-jumps", text=text)
-    if words := assumed_words(friction=sets.least is not None, rest=not given.base.structure.predicts_loss):
+    if words := assumed_words(friction=sets.least is not None, rest=bool(np.ptp(sets.rest, axis=0).any())):
         yield Note(code="level-damping", text=f"damping in service assumes {' and '.join(words)}")
     if given.base.structure.joints:
         text = (

@@ -28,6 +28,7 @@ def vibrations_of(case: Case, state: LoadedCase) -> tuple[VibrationResponse, ...
         found=Vibration(modes=state.modes, damped=state.damped, stiffness=stiffness, loss=loss),
         bolts=service_bolts(structure, study),
         provenance=provenance(study),
+        parts_loss=study.parts_loss,
     )
     return tuple(vibrate(base, one) for one in study.vibrations)
 

@@ -170,6 +170,11 @@ class Study(Summary):
         return self.uncertain is None or not self.uncertain.only
 
     @property
+    def parts_loss(self) -> float:
+        """Loss factor [-] of the parts themselves; 0 where nothing is said of it."""
+        return 0.0 if self.response is None else self.response.structural_loss
+
+    @property
     def in_order(self) -> bool:
         """Whether the bolts are tightened one after another."""
         return any(case.order is not None for case in self.preloads)

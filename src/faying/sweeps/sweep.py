@@ -9,6 +9,7 @@ import numpy as np
 
 from faying.case.case import checked_laws, surfaces_of
 from faying.errors import FayingError, InputError
+from faying.joint.joint_law import all_predict_loss
 from faying.misuse import checked_call
 from faying.progress import Report, silent
 from faying.reduction.reduced import ReducedModel
@@ -39,7 +40,7 @@ def evaluate(model: ReducedModel, builder: VariantBuilder, indices: Sequence[int
         open_share, above_range = contact_shares(weights, laws, found.preload.pressures)
         return {
             "frequencies": found.frequencies,
-            "loss_factors": found.loss_factors if any(law.predicts_loss for law in laws) else unknown,
+            "loss_factors": found.loss_factors if all_predict_loss(laws) else unknown,
             "estimate": found.estimate.max(),
             "greatest_pressure": np.concatenate(found.preload.pressures).max(),
             "open_share": open_share,

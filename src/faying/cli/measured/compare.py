@@ -6,14 +6,13 @@ from typing import Any
 import click
 
 from faying import units
-from faying.cli.options import PATH, show
-from faying.errors import InputError
+from faying.cli.options import PATH, refuse_given, show
 from faying.file_kinds import RESULT, kind_of
 from faying.files import together, write_text
 from faying.output.terminal import folded
 from faying.units import load_text
 
-FOR_BOTH = ("result", "other", "load", "out", "as_json")
+FOR_BOTH = {"result", "other", "load", "out", "as_json"}
 
 
 def show_two_runs(files: tuple[Path, Path], load: str | None, out: Path | None, *, as_json: bool) -> None:
@@ -97,7 +96,8 @@ def command(
     FRFs. For another result, modes are paired by their shapes, at each preload that both results have.
     """
     if kind_of(other) is RESULT:
-        _check_no_test(click.get_current_context())
+        of_test = {str(one.name) for one in click.get_current_context().command.params} - FOR_BOTH
+        refuse_given(of_test, "for a hammer test alone, where two results are compared")
         show_two_runs((result, other), load, out, as_json=as_json)
         return
     from faying.measured.compare import compare_modes
@@ -131,17 +131,3 @@ def command(
     head = f"{model.title} at {load_text(model.load)}; {nodes} points of the test found a node"
     lines = [head, "", table.text(comparison.rows()), *(f"note: {line}" for line in comparison.notes)]
     show(as_json, comparison.to_dict, lambda: folded("\n".join(lines)), files, out)
-
-
-def _check_no_test(context: click.Context) -> None:
-    """Raise InputError for an option that two results have no use for."""
-    from click.core import ParameterSource
-
-    given = [
-        parameter.opts[0]
-        for parameter in context.command.params
-        if parameter.name not in FOR_BOTH
-        and context.get_parameter_source(str(parameter.name)) is ParameterSource.COMMANDLINE
-    ]
-    if given:
-        raise InputError(f"{', '.join(given)}: for a hammer test alone; leave it out where two results are compared")

@@ -6,15 +6,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from faying.cli.options import FILE, PATH, show
+from faying.cli.options import FILE, PATH, refuse_given, show
 from faying.cli.progress import Form, Shown, progress_options
-from faying.errors import InputError
 from faying.files import new_folder, write_text
 
 if TYPE_CHECKING:
     from faying.study import Study
-NOT_OF_ASSEMBLIES = ("samples", "plot", "tornado", "html")  # what no assembly has
-DEFAULT = click.core.ParameterSource.DEFAULT
 
 
 @click.command()
@@ -63,9 +60,7 @@ def command(
     from faying.style import check_figure, save
 
     if assemblies:
-        source = click.get_current_context().get_parameter_source
-        if given := [name for name in NOT_OF_ASSEMBLIES if source(name) is not DEFAULT]:
-            raise InputError(f"--assemblies gives tables and a file; leave out --{min(given)}")
+        refuse_given({"samples", "plot", "tornado", "html"}, "--assemblies gives tables and a file")
         _assembled(Study.read(study), assemblies, seed, jobs=jobs, out=out, as_json=as_json, progress=progress)
         return
     figures = {drawing.intervals: plot, drawing.tornado: tornado}

@@ -113,7 +113,7 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
     "--to",
     "program",
     type=click.Choice(["abaqus", "calculix"]),
-    help="Print the law as a surface interaction of that program, with --unit.",
+    help="Print the law as a surface interaction of that program, with --unit; --pressure: where friction sticks.",
 )
 @click.option("--unit", help='With --to: unit of length of the model, such as "mm"; force in N.')
 @click.option("--json", "as_json", is_flag=True, help="Print JSON in SI units instead of a table.")
@@ -181,7 +181,7 @@ def command(
         if program is not None:
             from faying.export.law_tables import law_tables
 
-            click.echo(law_tables(law, program, unit=unit or "m"), nl=False)
+            click.echo(law_tables(law, program, unit=unit or "m", pressure=pressure), nl=False)
             return
         response = law.at_pressure(pressures if pressure is not None else reached(law, pressures), after=after)
     h = conducted(law, response, pair) if options["conductance"] else None

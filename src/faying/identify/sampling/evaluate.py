@@ -15,7 +15,7 @@ from faying.identify.sampling.ensemble import Ensemble
 from faying.identify.sampling.points import at_shares, sobol
 from faying.identify.sampling.store import SampleStore
 from faying.joint.equilibrium import PreloadState
-from faying.joint.joint_law import JointLaw
+from faying.joint.joint_law import JointLaw, all_predict_loss
 from faying.joint.structure import Structure
 from faying.measured.mac import mac
 from faying.measured.pairing import pair_over_loads
@@ -138,7 +138,7 @@ class Evaluator:
         frequencies = np.stack([one.frequencies for one in found])
         loss = np.stack([one.loss_factors for one in found])
         names = named([one.shapes for one in self.median], [one.shapes for one in found], model.matrices[2])
-        lossless = not any(law.predicts_loss for law in laws)
+        lossless = not all_predict_loss(laws)
         nothing = np.full((ensemble.loads, model.count), np.nan)
         loss = nothing if lossless else loss
         # the mode that has the shape of each mode of the median, or the next one left

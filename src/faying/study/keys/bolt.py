@@ -38,7 +38,7 @@ def read_bolt(
     bolt: Bolt | SolidBolt | None = None
     if part is not None:
         _note_solid(table, part)
-        bolt = SolidBolt(name=name, part=part, faces=faces, at=at, fastener=fastener)
+        bolt = SolidBolt(name=name, part=part, faces=faces, at=at, fastener=fastener, friction=friction)
     else:
         material = named_material(table, materials, f"bolt {name!r}")
         washers = table.every("washer", lambda one: _washer(one, name, materials))
@@ -49,9 +49,12 @@ def read_bolt(
                 f"bolt {name!r} has {' and '.join(idle)}, but no diameter and material: it is a force without "
                 "stiffness and mass; give both, or leave that out"
             )
-        if diameter is None and "material" in table.data:
+        other = {"material", "torque", "grade", "pitch"} & set(table.data)
+        if (diameter is None and "material" in other) or (diameter is not None and not other):
+            has, no = ("material", "diameter") if diameter is None else ("diameter", "material")
             table.faults.add(
-                f"bolt {name!r} has a material but no diameter; give both, or neither for a bolt without stiffness"
+                f"bolt {name!r} has a {has} but no {no}; give both, or neither for a bolt without stiffness, whose "
+                'size thread says, such as "M8"'
             )
         elif all(faces):  # else there is a fault already
             bolt = table.made(

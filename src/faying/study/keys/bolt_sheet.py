@@ -103,8 +103,7 @@ def _curve(table: Table) -> FatigueCurve | None:
 
 def frictions_of(choice: BoltSheetChoice, bolt: Bolt | SolidBolt) -> tuple[float | None, float | None]:
     """Friction in the thread and under the head of a bolt [-]: of its sheet, else its own; None where not said."""
-    own = bolt.friction if isinstance(bolt, Bolt) else None
-    thread, head = own or (None, None)
+    thread, head = bolt.friction or (None, None)
     return (
         thread if choice.thread_friction is None else choice.thread_friction,
         head if choice.head_friction is None else choice.head_friction,
