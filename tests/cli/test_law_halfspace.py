@@ -7,7 +7,6 @@ import pytest
 from click.testing import CliRunner
 
 from faying.cli.main import cli
-from faying.errors import InputError
 from faying.materials import CATALOGUE
 
 STEEL = ["--material", "45 steel", "--pressure", "5 MPa:200 MPa:5"]
@@ -37,14 +36,12 @@ def run(*arguments):
 
 @pytest.mark.slow
 def test_the_half_space_stands_beside_the_analytic_laws(scan_file, tmp_path):
-    plot, picture = tmp_path / "law.png", tmp_path / "map.png"
-    result = run(
-        *scan_file, *STEEL, "--models", "jk,gw,persson,halfspace", "--plot", str(plot), "--contact-map", str(picture)
-    )
+    plot = tmp_path / "law.png"
+    result = run(*scan_file, *STEEL, "--models", "jk,gw,persson,halfspace", "--plot", str(plot))
     assert result.exit_code == 0, result.output
     assert "half-space" in result.stdout
     assert "max / min" in result.stdout
-    assert plot.read_bytes()[:4] == picture.read_bytes()[:4] == b"\x89PNG"
+    assert plot.read_bytes()[:4] == b"\x89PNG"
 
 
 def test_the_half_space_alone_takes_the_scan(scan_file):
@@ -64,10 +61,3 @@ def test_what_the_scan_does_not_resolve_is_said_beside_the_numbers(scan_file):
     alone = run(*scan_file, *STEEL, "--model", "halfspace").stdout
     assert words in alone
     assert " *" in alone
-
-
-def test_a_contact_map_without_a_numerical_contact_is_refused(scan_file):
-    with pytest.raises(InputError, match="put halfspace among --models"):
-        run(*scan_file, *STEEL, "--models", "jk,gw", "--contact-map", "x.png")
-    with pytest.raises(InputError, match="needs --scan"):
-        run(*scan_file, *STEEL, "--model", "jk", "--contact-map", "x.png")

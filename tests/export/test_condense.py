@@ -33,12 +33,10 @@ def test_the_full_model_is_that_of_run(file, found):
     assert np.sort(np.diag(found.joint.stiffness)[:3]) == pytest.approx(np.sort(total), rel=1e-9)
 
 
-def test_ties_bracket_the_full_model(found):
+def test_mean_ties_are_softer_than_the_full_model(found):
     known = ~np.isnan(found.mean)
     assert known.any()
     assert np.all(found.mean[known] <= found.frequencies[known] * (1 + 1e-7))
-    known = ~np.isnan(found.rigid)
-    assert np.all(found.rigid[known] >= found.frequencies[known] * (1 - 1e-7))
 
 
 @pytest.mark.parametrize(
@@ -54,8 +52,8 @@ def test_the_reach_ends_before_the_first_mode_that_is_wrong(found, errors, reach
 def test_the_table_has_loss_only_where_the_law_predicts_it(found):
     """A law without loss gives a table that a terminal can show, without the two columns of loss."""
     with_loss, without = found.rows(), replace(found, lossless=True).rows()
-    assert [row[:6] for row in with_loss] == without
-    assert with_loss[0][6:] == ["loss", "mean ties"]
+    assert [row[:4] for row in with_loss] == without
+    assert with_loss[0][4:] == ["loss", "mean ties"]
     assert "full [Hz]" in shown(without).splitlines()[0]
     for mode, row in enumerate(without[1:]):
         assert row[1] == f"{found.frequencies[mode]:.2f}"

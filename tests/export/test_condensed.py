@@ -82,30 +82,24 @@ def test_between_two_points():
 def both(structure, springs, count=12):
     K, _ = structure.coupled([springs])
     full = lowest_modes(K, structure.dynamic_matrices[1], count, shift_frequency=structure.shift_frequency)
-    ties = {tie: condensed_modes(structure, [springs], 0, count, tie=tie) for tie in ("mean", "rigid")}
-    return full.frequencies[6:], {tie: found.frequencies[6:] for tie, found in ties.items()}, full, ties
+    ties = condensed_modes(structure, [springs], 0, count)
+    return full.frequencies[6:], ties.frequencies[6:], full, ties
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.9])
 def test_against_the_full_model_below_the_first_internal_mode(slope):
-    """Sections stay plane in the lowest modes: bending, twist and length within 1 % with mean ties, which are softer.
-
-    Rigid ties bracket from above.
-    """
+    """Sections stay plane in the lowest modes: bending, twist and length within 1 %, and softer."""
     structure, springs = rods(slope=slope, sections=[(3, 4), (3, 4)])
     full, found, _, _ = both(structure, springs)
-    assert found["mean"] == pytest.approx(full, rel=0.01)
-    assert np.all(found["mean"] <= full * (1 + 1e-7))
-    assert np.all(found["rigid"] >= full * (1 - 1e-7))
-    assert found["rigid"][:4] == pytest.approx(full[:4], rel=0.05)
+    assert found == pytest.approx(full, rel=0.01)
+    assert np.all(found <= full * (1 + 1e-7))
 
 
 def test_rigid_parts_make_the_condensed_joint_exact():
-    """Rods ten thousand times as stiff: the six lowest modes are those of the joint, whatever the ties."""
+    """Rods ten thousand times as stiff: the six lowest modes are those of the joint."""
     structure, springs = rods(material=replace(STEEL, E=200e13))
     full, found, _, _ = both(structure, springs)
-    assert found["mean"] == pytest.approx(full[:6], rel=1e-4)
-    assert found["rigid"] == pytest.approx(full[:6], rel=1e-4)
+    assert found == pytest.approx(full[:6], rel=1e-4)
     M = WIDTH * HEIGHT * LENGTH * 7800.0
     assert np.min(np.abs(full - np.sqrt(2 * K_N * WIDTH * HEIGHT / M) / (2 * np.pi))) < 1e-3 * full[0]
 
@@ -116,11 +110,11 @@ def test_loss_factors_are_those_of_the_full_joint():
     full, _, modes, ties = both(structure, springs)
     shapes = modes.shapes[:, 6:]
     lost = np.einsum("im,im->m", shapes, springs.loss() @ shapes) / (2 * np.pi * full) ** 2
-    assert ties["mean"].loss_factors[6:] == pytest.approx(lost, rel=0.03, abs=1e-5)
+    assert ties.loss_factors[6:] == pytest.approx(lost, rel=0.03, abs=1e-5)
 
 
 def test_what_cannot_be_condensed():
-    structure, springs = rods()
+    _, springs = rods()
     nothing = replace(springs, k_n=0 * springs.k_n, k_t=0 * springs.k_t)
     with pytest.raises(faying.InputError, match="the joint is open"):
         CondensedJoint.of(nothing)
@@ -128,9 +122,6 @@ def test_what_cannot_be_condensed():
     point = replace(springs, k_n=np.where(one, springs.k_n, 0.0), k_t=np.where(one, springs.k_t, 0.0))
     with pytest.raises(faying.InputError, match="one line or at one point"):
         CondensedJoint.of(point)
-    held = replace(structure, supports=(Support(face="p0.right"),))
-    with pytest.raises(faying.InputError, match=r"a support holds some of the face 'p0.right'"):
-        condensed_modes(held, [springs], 0, 8, tie="rigid")
 
 
 def test_supports_and_other_joints_stay():
@@ -148,6 +139,6 @@ def test_supports_and_other_joints_stay():
     K, _ = structure.coupled(springs)
     full = lowest_modes(K, structure.dynamic_matrices[1], 5, shift_frequency=structure.shift_frequency).frequencies
     for number in (0, 1):
-        mean = condensed_modes(structure, springs, number, 5, tie="mean").frequencies
+        mean = condensed_modes(structure, springs, number, 5).frequencies
         assert mean == pytest.approx(full, rel=0.01)
         assert np.all(mean <= full * (1 + 1e-7))

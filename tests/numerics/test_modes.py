@@ -265,12 +265,12 @@ def test_the_environment_chooses(monkeypatch):
 
 def test_a_broken_installation_is_left_out(tmp_path, monkeypatch):
     """A library that is there but cannot be loaded (built for another NumPy, say) is not a library."""
-    (tmp_path / "mumps").mkdir()
-    (tmp_path / "mumps" / "__init__.py").write_text("raise RuntimeError('built for another NumPy')")
+    (tmp_path / "pypardiso").mkdir()
+    (tmp_path / "pypardiso" / "__init__.py").write_text("raise RuntimeError('built for another NumPy')")
     monkeypatch.syspath_prepend(tmp_path)
-    for name in [name for name in sys.modules if name.split(".")[0] == "mumps"]:
+    for name in [name for name in sys.modules if name.split(".")[0] == "pypardiso"]:
         monkeypatch.delitem(sys.modules, name)
-    assert "mumps" not in available.__wrapped__()
+    assert "pardiso" not in available.__wrapped__()
     assert "superlu" in available.__wrapped__()
 
 

@@ -255,6 +255,12 @@ def test_a_factor_on_a_preload_is_on_that_which_is_given_with_it(values, force, 
         assert point.with_values({key: named[key] for key in keys}).forces.tolist() == [force]
 
 
+def test_a_diameter_without_material_is_the_size_of_the_thread(folder):
+    """It had no effect without a word: the sheet did not know the thread."""
+    bolt = study(folder, bolt=[BOLT | {"preload": "1 kN", "diameter": "8 mm"}]).bolts[0]
+    assert (str(bolt.metric), bolt.size, bolt.diameter) == ("M8x1.25", 8e-3, None)
+
+
 @pytest.mark.parametrize(
     ("bolt", "text"),
     [
@@ -270,7 +276,6 @@ def test_a_factor_on_a_preload_is_on_that_which_is_given_with_it(values, force, 
         ({"torque": "1 N m"} | SHANK, "add nut_factor"),
         ({"torque": "1 N m", "nut_factor": 7} | SHANK, "nut_factor = 7 should be a plain number from 0.02 to 1"),
         ({"preload": "1 kN", "material": "45 steel"}, "has a material but no diameter"),
-        ({"preload": "1 kN", "diameter": "8 mm"}, "has a diameter but no material; give both, or neither"),
         ({"preload": "1 kN", "diameter": "8 mm", "material": "cheese"}, 'material "cheese" is unknown'),
         ({"preload": "1 kN", "washer": [WASHER | {"material": "cheese"}]} | SHANK, 'material "cheese" is unknown'),
         ({"preload": "1 kN", "washer": [{"outer": "3 mm"}]}, r"washer\[1\].inner is missing"),

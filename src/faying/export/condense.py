@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from faying.decks.deck import CondensedDeck, UnitSystem, six_each, write_condens
 from faying.errors import InputError
 from faying.fe.elasticity import unit_motions
 from faying.fe.interface import Interface
-from faying.joint.assembled_parts import unknowns_of
 from faying.joint.preload_case import preload_index
 from faying.joint.shared_modes import modes_of
 from faying.joint.springs import Springs
@@ -37,8 +36,6 @@ from faying.typing import Array
 from faying.units import load_text
 
 OPEN = 1e-12  # of its greatest: a stiffness below it leaves the joint free to move
-
-Tie = Literal["mean", "rigid"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -137,29 +134,27 @@ def condensed_modes(
     number: int,
     count: int,
     *,
-    tie: Tie,
     solver: str | None = None,
 ) -> CondensedModes:
-    """Find the modes of a structure with one of its joints condensed.
+    """Find the modes of a structure with one of its joints condensed, its points on the mean motions of the faces.
+
+    Such ties (RBE3) leave the faces free to deform, and are too soft.
 
     Args:
         structure: the structure.
         springs: of each joint, at its preload.
         number: of the joint that is condensed, from 0; the others stay as they are.
         count: of modes, rigid ones included.
-        tie: how the points hang on their faces: "mean" by the mean motion (RBE3), which leaves the faces free to
-            deform and is too soft, or "rigid", both faces rigid (RBE2), which is too stiff.
         solver: factorisation, the fastest one found where None.
 
     Raises:
-        InputError: with rigid ties, a support holds some of the face.
         NotConverged: the modes are not found.
     """
     joint = CondensedJoint.of(springs[number])
     K, M = structure.dynamic_matrices
     others = [s.stiffness() for k, s in enumerate(springs) if k != number]
     K = sum((constrain(other, structure.fixed, 0.0) for other in others), K)
-    modes, motion = (_rigid if tie == "rigid" else _mean)(structure, K, M, joint, number, count, solver)
+    modes, motion = _mean(structure, K, M, joint, count, solver)
     # to first order, of mass-normalised modes
     lost, squared = np.einsum("im,ij,jm->m", motion, joint.loss, motion), (2 * np.pi * modes.frequencies) ** 2
     factors = np.divide(lost, squared, out=np.zeros_like(lost), where=squared > 0)
@@ -167,7 +162,7 @@ def condensed_modes(
 
 
 def _mean(
-    structure: Structure, K: Any, M: Any, joint: CondensedJoint, number: int, count: int, solver: str | None
+    structure: Structure, K: Any, M: Any, joint: CondensedJoint, count: int, solver: str | None
 ) -> tuple[Modes, Array]:
     """Lowest modes with the points on the mean motions of the faces, and the relative motions of these (6, m).
 
@@ -185,41 +180,10 @@ def _mean(
     return replace(modes, shapes=modes.shapes[:-6]), modes.shapes[-6:]
 
 
-def _rigid(
-    structure: Structure, K: Any, M: Any, joint: CondensedJoint, number: int, count: int, solver: str | None
-) -> tuple[Modes, Array]:
-    """Lowest modes with both faces of a joint rigid, and the relative motions of these (6, m)."""
-    from scipy.sparse import block_diag, csr_array, eye_array, hstack
-
-    mesh = structure.mesh
-    face_nodes = [mesh.face_nodes(face) for face in structure.joints[number].faces]
-    supported = np.unique(structure.fixed // 3)
-    for face, nodes in zip(structure.joints[number].faces, face_nodes, strict=True):
-        if np.isin(nodes, supported).any():
-            raise InputError(f"a support holds some of the face {face!r}, which rigid ties would move")
-    tied = unknowns_of(np.concatenate(face_nodes))
-    free = np.setdiff1d(np.arange(mesh.unknowns), tied)
-    blocks = [csr_array(unit_motions(mesh.points[nodes] - joint.point).reshape(-1, 6)) for nodes in face_nodes]
-    rows = csr_array((np.ones(len(tied)), (tied, np.arange(len(tied)))), shape=(mesh.unknowns, len(tied)))
-    tie = hstack([eye_array(mesh.unknowns, format="csc")[:, free], rows @ csr_array(block_diag(blocks))]).tocsr()
-    turn = np.concatenate([-np.eye(6), np.eye(6)], axis=1)
-    place = np.arange(len(free), len(free) + 12)
-    inner = turn.T @ joint.stiffness @ turn
-    entry = csr_array((inner.ravel(), (np.repeat(place, 12), np.tile(place, 12))), shape=(tie.shape[1],) * 2)
-    modes = lowest_modes(
-        (tie.T @ K @ tie + entry).tocsr(),
-        (tie.T @ M @ tie).tocsr(),
-        count,
-        shift_frequency=structure.shift_frequency,
-        solver=solver,
-    )
-    return replace(modes, shapes=np.asarray(tie @ modes.shapes)), turn @ modes.shapes[place]
-
-
 LIKE = 0.5  # MAC by mass from which two modes are one
 CLOSE = 0.01  # error of a frequency up to which the condensed joint counts as right
 COUNTED = 2  # spare modes with the joint condensed, so that the last ones find a partner
-STAGES = 6
+STAGES = 5
 Point = Sequence[float | str] | Array
 
 
@@ -234,8 +198,8 @@ class Condensed(Summary):
         points (2, 3): the point of the first face and that of the second [m].
         frequencies [Hz] (m,), loss [-] (m,): of the elastic modes of the full model; loss to first order, of this
             joint.
-        mean, rigid [Hz] (m,): of the same modes with the joint condensed and its points on the mean motions of the
-            faces, or on rigid faces; NaN where no mode is like it.
+        mean [Hz] (m,): of the same modes with the joint condensed and its points on the mean motions of the faces; NaN
+            where no mode is like it.
         mean_loss [-] (m,): loss factors with mean ties.
         lossless: the law of the joint predicts no loss.
     """
@@ -248,7 +212,6 @@ class Condensed(Summary):
     frequencies: Array
     loss: Array
     mean: Array
-    rigid: Array
     mean_loss: Array
     lossless: bool
 
@@ -327,7 +290,7 @@ class Condensed(Summary):
         }
 
     def rows(self) -> list[list[str]]:
-        """One row per mode: the full model, and both ties with their errors; loss where the law predicts one."""
+        """One row per mode: the full model, and mean ties with their error; loss where the law predicts one."""
         f = self.frequencies
         loss = (("loss", self.loss, ".2e"), ("mean ties", self.mean_loss, ".2e"))
         return in_columns(
@@ -335,8 +298,6 @@ class Condensed(Summary):
             ("full [Hz]", f, ".2f"),
             ("mean ties [Hz]", self.mean, ".2f"),
             ("error [%]", 100 * (self.mean / f - 1), "+.3f"),
-            ("rigid ties [Hz]", self.rigid, ".2f"),
-            ("error [%]", 100 * (self.rigid / f - 1), "+.3f"),
             *(() if self.lossless else loss),
         )
 
@@ -351,7 +312,6 @@ class Condensed(Summary):
             "points": {"unit": "m", "values": self.points.tolist()},
             "frequencies": {"unit": "Hz", "values": listed(self.frequencies)},
             "mean_ties": {"unit": "Hz", "values": listed(self.mean)},
-            "rigid_ties": {"unit": "Hz", "values": listed(self.rigid)},
             "loss_factors": {"unit": "1", "values": None if self.lossless else listed(self.loss)},
             "mean_ties_loss_factors": {"unit": "1", "values": None if self.lossless else listed(self.mean_loss)},
             "reach": {"unit": "Hz", "values": self.reach},
@@ -397,16 +357,10 @@ def condense(
     shapes, frequencies = modes.shapes[:, elastic], modes.frequencies[elastic]
     lost = np.einsum("im,im->m", shapes, springs[number].loss() @ shapes)
 
-    def tied(tie: Literal["mean", "rigid"]) -> tuple[Array, Array]:
-        """Frequencies and loss factors of these modes with the joint condensed; NaN where none is like them."""
-        progress.begin(f"modes with {tie} ties")
-        other = condensed_modes(structure, springs, number, elastic.stop + COUNTED, tie=tie, solver=study.modes.solver)
-        at = partners(mac(shapes.T, other.shapes.T, structure.dynamic_matrices[1]), LIKE)
-        found, loss = (np.where(at < 0, np.nan, values[at]) for values in (other.frequencies, other.loss_factors))
-        return found, loss
-
-    mean, mean_loss = tied("mean")
-    rigid, _ = tied("rigid")
+    progress.begin("modes with mean ties")
+    other = condensed_modes(structure, springs, number, elastic.stop + COUNTED, solver=study.modes.solver)
+    at = partners(mac(shapes.T, other.shapes.T, structure.dynamic_matrices[1]), LIKE)
+    mean, mean_loss = (np.where(at < 0, np.nan, values[at]) for values in (other.frequencies, other.loss_factors))
     return Condensed(
         study=study.title,
         name=study.joints[number].name,
@@ -416,7 +370,6 @@ def condense(
         frequencies=frequencies,
         loss=lost / (2 * np.pi * frequencies) ** 2,
         mean=mean,
-        rigid=rigid,
         mean_loss=mean_loss,
         lossless=not structure.joints[number].law.predicts_loss,
     )

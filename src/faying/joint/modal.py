@@ -19,7 +19,7 @@ from faying.typing import Array
 SPARE_MODES = 6  # beyond those asked for, so that the basis of the complex modes does not end at the last of them
 MAX_MODES = 10_000
 EXACT = 1e-8  # of the squared frequencies, complex or not: 5e-9 of a frequency, 1e-8 of a loss factor, 1e-4 of a shape
-SOLVERS = ("pardiso", BY_PARTS, "mumps", "superlu")
+SOLVERS = ("pardiso", BY_PARTS, "superlu")
 
 
 @dataclass(frozen=True, kw_only=True)

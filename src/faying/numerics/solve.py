@@ -46,34 +46,6 @@ class Released:
         raise RuntimeError(f"the factorisation by {self.name} was released")
 
 
-class _Mumps:
-    """MUMPS through python-mumps."""
-
-    name = "MUMPS"
-
-    def __init__(self, matrix: Any) -> None:
-        import mumps
-
-        self._context = mumps.Context()
-        self._context.set_matrix(matrix.tocoo(), symmetric=True)
-        self._context.analyze()
-        self.memory = 1e6 * float(self._context.analysis_stats.est_mem_incore)
-        check(self.memory, matrix.shape[0], self.name)
-        try:
-            self._context.factor(reuse_analysis=True)
-        except mumps.MUMPSError as fault:
-            raise NotConverged(f"MUMPS could not factorise the matrix ({fault}); is a part free to move?") from None
-        negative = self._context.mumps_instance.infog[12]
-        if negative > 0:
-            raise NotConverged(
-                f"MUMPS finds {negative} negative pivots, so the matrix is not positive definite; is a part held by "
-                "nothing?"
-            )
-
-    def solve(self, right: Array) -> Array:
-        return np.asarray(self._context.solve(np.array(right, dtype=float, order="F")))
-
-
 class _SuperLU:
     """SciPy's SuperLU: always there, slow and hungry on solids."""
 
@@ -99,12 +71,11 @@ def _superlu(matrix: Any) -> tuple[Any, float]:
     return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric), memory
 
 
-_MODULE = {"pardiso": "pypardiso", "mumps": "mumps", "superlu": "scipy"}
+_MODULE = {"pardiso": "pypardiso", "superlu": "scipy"}
 BY_PARTS = "pardiso-by-parts"  # a way to use PARDISO on structures; as a whole where there are no parts
 _BACKENDS: dict[str, Callable[[Any], Factorisation]] = {
     "pardiso": Pardiso,
     BY_PARTS: Pardiso,
-    "mumps": _Mumps,
     "superlu": _SuperLU,
 }
 

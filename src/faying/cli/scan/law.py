@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from faying.cli.options import PATH, NamedPath, quantity
+from faying.cli.options import PATH, NamedPath, quantity, refuse_given
 from faying.errors import InputError
 from faying.files import write_text
 from faying.output.terminal import folded, indented
@@ -103,11 +103,6 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
 @click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
 @click.option("--all-models", is_flag=True, help="All laws of a scan, with their ratio to the half-space.")
 @click.option("--stability", is_flag=True, help="k_n on parts of the scan and on fewer points, at the middle pressure.")
-@click.option(
-    "--contact-map",
-    type=NamedPath(dir_okay=False),
-    help="Picture of where the scan touches at the last pressure; with halfspace among --models.",
-)
 @click.option("--conductance", is_flag=True, help="Also the thermal conductance h from k_n, for clean metal in vacuum.")
 @click.option(
     "--to",
@@ -128,7 +123,6 @@ def command(
     plot: str | None,
     models: str | None,
     all_models: bool,
-    contact_map: str | None,
     stability: bool,
     after: str | None,
     program: str | None,
@@ -144,13 +138,17 @@ def command(
     from faying.contact.build import find
 
     on_scan = options["scan"] is not None
-    alone = [f"--{name.replace('_', '-')}" for name in OF_SCAN if options[name] is not None]
-    alone += ["--stability"] * stability + ["--method"] * (options["method"] != "psd")
-    if alone and not on_scan:
-        raise InputError(f"{', '.join(alone)}: only with --scan FILE")
-    other = {"--csv": csv_file, "--plot": plot, "--contact-map": contact_map, "--conductance": options["conductance"]}
-    if stability and any(other.values()):
-        raise InputError(f"--stability has a table of its own: leave out {', '.join(k for k, v in other.items() if v)}")
+    if not on_scan:
+        refuse_given({*OF_SCAN, "stability", "method"}, "with --scan FILE alone")
+    if stability:
+        refuse_given({"csv_file", "plot", "conductance", "after"}, "--stability has a table of its own")
+    if models or all_models:
+        refuse_given({"after"}, "for one law")
+    if program:
+        others = {"models", "all_models", "after", "csv_file", "plot", "as_json", "conductance", "stability"}
+        refuse_given(others, "--to prints one law on first loading")
+    if (program is None) is not (unit is None):
+        raise InputError('--to takes --unit, such as "mm"')
     kind = find(model or ("auto" if on_scan else "JK"))
     needed = on_scan or options["conductance"] or kind.label == "auto" or kind.law.takes_materials()
     pair = pair_of(options, needed=needed)
@@ -162,18 +160,12 @@ def command(
         given = given_of(kind, options, settings, mates)
         click.echo(law_table.stability(mates, labels, given, float(pressures[len(pressures) // 2]), as_json))
         return
-    if after and (stability or models or all_models):
-        raise InputError("--after is for one law: leave out --stability, --models and --all-models")
-    if (program is None) is not (unit is None) or (program and (models or all_models or after)):
-        raise InputError('--to takes --unit, such as "mm", and one law on first loading: no --models and no --after')
     if models or all_models:
         if mates is None or not on_scan or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")
-        files = {"csv_file": csv_file, "plot": plot, "contact_map": contact_map}
+        files = {"csv_file": csv_file, "plot": plot}
         law_table.show(mates, several, pressures, **files, as_json=as_json, conductance=options["conductance"])
         return
-    if contact_map:
-        raise InputError("--contact-map needs --scan, and halfspace among --models")
     given = given_of(kind, options, settings, mates)
     with nullcontext() if mates is None else law_table.watched(mates) as seen:
         choice = pick(kind, given, None, pair) if seen is None else seen.choose(kind, given)

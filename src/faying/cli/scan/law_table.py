@@ -12,7 +12,7 @@ import click
 
 from faying.cli.options import quantity
 from faying.cli.progress import Shown
-from faying.errors import FayingError, InputError
+from faying.errors import FayingError
 from faying.files import write_text
 from faying.output import terminal
 from faying.output.terminal import folded
@@ -21,7 +21,6 @@ from faying.units import show as unit
 
 if TYPE_CHECKING:
     from faying.contact.compare import Comparison
-    from faying.contact.law import ContactLaw
     from faying.contact.mates import Mates
     from faying.contact.response import Response
     from faying.materials import ContactPair
@@ -39,7 +38,6 @@ def show(
     conductance: bool,
     csv_file: str | None,
     plot: str | None,
-    contact_map: str | None,
 ) -> None:
     """Compare the laws and print, write and draw the outcome."""
     from faying.contact.compare import compare
@@ -47,8 +45,6 @@ def show(
     inputs = mates.faces.rough.inputs
     with watched(mates) as seen:
         made, left_out = seen.laws(names)
-        if contact_map:
-            draw_contact(made, float(pressures[-1]), contact_map)
         comparison = compare(made, pressures, left_out)
     heat = conducted(comparison, mates.pair) if conductance else {}
     if csv_file:
@@ -70,18 +66,6 @@ def conducted(comparison: Comparison, pair: ContactPair) -> dict[str, Array]:
     from faying.contact.conductance import heat_conductance
 
     return {n: heat_conductance(r.k_n, pair) for n, r in comparison.responses.items() if r.k_n is not None}
-
-
-def draw_contact(laws: dict[str, ContactLaw], pressure: float, path: str) -> None:
-    """Write the picture of where the scan touches at a pressure [Pa]; InputError unless one is solved on the scan."""
-    from faying.contact.models.half_space import HalfSpace
-    from faying.halfspace.figure import contact_figure
-    from faying.style import save
-
-    solved = [law for law in laws.values() if isinstance(law, HalfSpace)]
-    if not solved:
-        raise InputError("--contact-map shows the numerical contact: put halfspace among --models")
-    save(contact_figure(solved[0].contact_at(pressure)), path)
 
 
 @contextmanager

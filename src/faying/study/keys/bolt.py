@@ -43,18 +43,17 @@ def read_bolt(
         material = named_material(table, materials, f"bolt {name!r}")
         washers = table.every("washer", lambda one: _washer(one, name, materials))
         given = {key: table.get(key) for key in ("seat", "head_mass", "nut_mass", "engaged", "shank", "head")}
+        if diameter is not None and "material" not in table.data and thread is None:
+            thread = table.made(lambda: Thread.near(diameter))  # the size of its thread, and no more
         idle = [key for key in ("head_mass", "nut_mass", "shank", "head") if key in table.data]
         if idle and "material" not in table.data:
             table.faults.add(
                 f"bolt {name!r} has {' and '.join(idle)}, but no diameter and material: it is a force without "
                 "stiffness and mass; give both, or leave that out"
             )
-        other = {"material", "torque", "grade", "pitch"} & set(table.data)
-        if (diameter is None and "material" in other) or (diameter is not None and not other):
-            has, no = ("material", "diameter") if diameter is None else ("diameter", "material")
+        if diameter is None and "material" in table.data:
             table.faults.add(
-                f"bolt {name!r} has a {has} but no {no}; give both, or neither for a bolt without stiffness, whose "
-                'size thread says, such as "M8"'
+                f"bolt {name!r} has a material but no diameter; give both, or neither for a bolt without stiffness"
             )
         elif all(faces):  # else there is a fault already
             bolt = table.made(
@@ -62,7 +61,7 @@ def read_bolt(
                     name=name,
                     faces=faces,
                     at=at,
-                    diameter=None if material is None else diameter,  # it may be given for a torque alone
+                    diameter=None if material is None else diameter,
                     material=material,
                     washers=washers,
                     fastener=fastener,
@@ -187,7 +186,9 @@ BOLT: Declared = {
         "A point on the axis, where a face holds more than one seat; of a meshed bolt, where the shank is drawn in."
     ),
     "part": Key.text("The part that is the bolt, where it is meshed."),
-    "diameter": Key.quantity("m", "Diameter of the shank; with material, the bolt has stiffness and mass."),
+    "diameter": Key.quantity(
+        "m", "Diameter of the shank; with material, the bolt has stiffness and mass, else it is the size of the thread."
+    ),
     "pitch": Key.quantity(
         "m",
         "Pitch of the thread, where it is not the coarse one; for its areas, and F = T/(0.16 P + 0.58 d2 mu + D_Km "

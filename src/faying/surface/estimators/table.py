@@ -1,6 +1,5 @@
 """The estimators of D and G: each is a function and an entry of the table."""
 
-from dataclasses import replace
 from functools import cache
 from math import log, pi
 
@@ -139,44 +138,6 @@ def by_roughness_length(ready: Prepared, limits: Limits, c: float) -> Estimate:
     return through_parts(ready, c, in_windows(1, False), size_band(ready, limits, 10, 1 / 4), "the roughness length")
 
 
-def by_box(ready: Prepared, limits: Limits, c: float) -> Estimate:
-    """Boxes that the surface meets (differential box counting of Sarkar and Chaudhuri, doi:10.1109/21.278), N ~ r^-D.
-
-    The box is as high, in units of the range of heights, as it is wide, in units of the side. Counting does not weigh
-    the heights, so G is read from the mean square difference over the geometric mean of the sizes. Strongly biased
-    towards the middle of 2 .. 3; its own remark says so.
-    """
-
-    def local(z: Array, known: Mask, steps: tuple[float, ...], low: float, high: float) -> tuple[float, float]:
-        step = max(steps)
-        side = side_of(z, steps)
-        span = float(np.ptp(z))
-        sizes = sizes_of(low, high, step, 10)
-        y = []
-        for s in sizes:
-            tops, bottoms = z, z
-            for axis in range(z.ndim):
-                starts = np.arange(0, tops.shape[axis] - s + 1, s)
-                cut = [slice(None)] * z.ndim
-                cut[axis] = slice(0, len(starts) * s)
-                # neighbouring boxes share their border, so that the surface is counted as continuous
-                tops = np.maximum.reduceat(tops[tuple(cut)], starts, axis=axis)
-                bottoms = np.minimum.reduceat(bottoms[tuple(cut)], starts, axis=axis)
-            height = span * s * step / side
-            covered = float(np.prod([len(range(0, n - s + 1, s)) * s / n for n in z.shape]))
-            count = np.floor((tops - z.min()) / height) - np.floor((bottoms - z.min()) / height) + 1
-            y.append(log(float(count.sum()) / covered))
-        D = float(-np.polyfit(np.log(np.array(sizes) * step), y, 1)[0]) + (1 if z.ndim == 1 else 0)
-        gap = sizes_of(low, high, step)[len(sizes_of(low, high, step)) // 2]
-        square = np.mean([float(np.mean((lines[:, gap:] - lines[:, :-gap]) ** 2)) for lines, _ in rows_of(z, steps)])
-        k = log(2 * structure_coefficient(inside(D))) + cut_log(inside(D), z.ndim == 2)
-        return D, log(max(float(square), 1e-300)) - (6 - 2 * D) * log(gap * step) - k
-
-    found = through_parts(ready, c, local, size_band(ready, limits, 2, 1 / 8), "box counting")
-    words = "box counting is known to be off by 0.1 and more in D: quote other methods too"
-    return replace(found, notes=(*found.notes, words))
-
-
 def by_higuchi(ready: Prepared, limits: Limits, c: float) -> Estimate:
     """Length of the profiles along x and y measured with steps of k points: L ~ k^-Ds (Higuchi, doi:10.1016/
     0167-2789(88)90081-4). G from the mean step, (2/pi)^(1/2) of its rms for Gaussian heights."""
@@ -279,7 +240,6 @@ ESTIMATORS: dict[str, Estimator] = {
         ("psd", by_psd, BAND, "none seen"),
         ("structure", by_structure, "lags from 3 spacings to a sixteenth of the side", "up to +0.1 in D below 2.2"),
         ("roughness-length", by_roughness_length, WINDOWS, "-0.05 to -0.1 in D above 2.4"),
-        ("box", by_box, "boxes from 2 spacings to an eighth of the side", "-0.1 to -0.4 in D"),
         ("higuchi", by_higuchi, STEPS, "+0.08 in D at 2.1, -0.06 at 2.7"),
         ("mfdfa", by_mfdfa, WINDOWS, "within 0.02 in D"),
         ("moments", by_moments, BAND, "none seen; its interval is twice as wide as that of psd"),
