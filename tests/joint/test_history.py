@@ -9,10 +9,11 @@ import pytest
 import faying
 from faying.contact.models.greenwood_williamson import GreenwoodWilliamson
 from faying.joint.joint_law import JointLaw
-from faying.joint.loaded_before import LoadedBefore, loaded_before
+from faying.joint.loaded_before import LoadedBefore, in_service, loaded_before
 from faying.joint.preload_case import PreloadCase, after_greatest, each_once, preload_index, with_history
 from faying.loads.contact import LoadedContact
 from faying.microslip.microslip import Microslip
+from tests.helpers.bars import bars, even
 from tests.helpers.boxes import row
 
 STEEL = faying.Material(name="steel", E=206e9, nu=0.3, hardness=2e9, density=7850.0)
@@ -82,6 +83,36 @@ def test_a_closed_cycle_loses_the_work_of_first_loading_and_nothing_again(first,
 def test_what_lasts_has_been_left_already(first, used):
     assert np.all(np.array(used.lasting_approach(0.5 * MOST)) == 0)
     assert used.first_loading == first
+
+
+def test_loads_of_service_part_on_the_way_back_and_press_on_by_k_n(first):
+    """About a preload that nothing came before, and about one below what was carried."""
+    serving = in_service(first, MOST).elastic.at(MOST > 0)
+    back = loaded_before(first, MOST).elastic.at(MOST > 0)
+    below = back.turn - back.parted
+    for share in (0.2, 0.5, 0.9):
+        p, k = serving.pressure(serving.parted + share * below)
+        q, slope = back.pressure(back.parted + share * below)
+        assert p == pytest.approx(q, rel=1e-9)
+        assert k == pytest.approx(slope, rel=1e-9)
+    more = 1.1 * MOST[1:]
+    assert serving.pressure(serving.approach(more))[1] == pytest.approx(first.stiffness(more)[0], rel=0.02)
+    half = in_service(loaded_before(first, MOST), 0.5 * MOST)
+    assert half.greatest == pytest.approx(MOST)
+    unknowing = even()
+    assert in_service(unknowing, MOST) is unknowing
+
+
+@pytest.mark.parametrize("friction", [None, 0.3])
+def test_a_load_that_takes_half_of_a_preload_leaves_the_joint_as_loosening_does(first, friction):
+    """Bars under a bolt that is a force: the modes of a pull are those of the bolt let go to the same clamp force."""
+    structure = bars(law=first, diameter=None, held=True, friction=friction).structure
+    tight, loose = structure.solve([4e3, 2e3], modes=4)
+    pull = faying.Load("pull", forces=[faying.Force("p1.right", force=(2e3, 0, 0))])
+    found = faying.load_cases(tight, [pull])
+    assert found.normal_force[0, 0] == pytest.approx(2e3, rel=1e-6)
+    assert found.frequency[0] == pytest.approx(loose.frequencies, rel=1e-6)
+    assert found.frequency[0, 0] > 1.005 * structure.solve(2e3, modes=4).frequencies[0]
 
 
 @pytest.mark.parametrize("friction", [None, 0.2])

@@ -23,7 +23,7 @@ from faying.joint.equilibrium import PreloadState
 from faying.joint.figure import Fastening, structure_axes
 from faying.joint.joint import FittedJoint, Joint, each_pair_once, known_face
 from faying.joint.joint_law import JointLaw, all_predict_loss
-from faying.joint.loaded_before import loaded_before
+from faying.joint.loaded_before import in_service, loaded_before
 from faying.joint.preload import PreloadProblem
 from faying.joint.springs import Springs
 from faying.materials import STIFFEST, Material, material_of
@@ -296,6 +296,11 @@ class BoltedStructure(Summary):
     def under(self, preload: PreloadState) -> Self:
         """Return the structure with the laws that its joints have under a preload: those of what was carried before."""
         return self.loaded_before(preload.carried)
+
+    def in_service(self, preload: PreloadState) -> Self:
+        """Return the structure with the laws that its joints have under loads about a preload, which they remember."""
+        pairs = zip(self.joints, preload.pressures, strict=True)
+        return self.with_joints(laws=[in_service(joint.law, pressure) for joint, pressure in pairs])
 
     def loaded_before(self, carried: Sequence[Array]) -> Self:
         """Return the structure whose joints have carried greatest pressures [Pa] (q,) before; () for first loading."""

@@ -215,6 +215,10 @@ class JointLaw:
 
         It is the curve of `pressure` unless the law has a k_load of its own.
         """
+        return self._by_k_n
+
+    @property
+    def _by_k_n(self) -> PressureCurve:
         if not self.yields:
             return self._curve
         return self.table.curve(self.scale * self.table.stiffness[0], "normal stiffness")

@@ -1,6 +1,6 @@
 """The law of a joint whose points have carried more before: they unload and load again along curves of their own."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,10 +17,14 @@ CELLS = 32  # pressures of each curve, a factor of 1.25 apart: the approach betw
 class LoadedBefore(JointLaw):
     """A joint's law whose points have carried `greatest` pressures [Pa] (q,): the order of points of its interface.
 
+    serves: whether what presses a point harder is a load of service, under which it closes by k_n, and no preload,
+    under which it goes on along first loading.
+
     Values at other numbers of points, from which an iteration sets out, are those of first loading.
     """
 
     greatest: Array
+    serves: bool = False
 
     @property
     def first_loading(self) -> JointLaw:
@@ -40,10 +44,11 @@ class LoadedBefore(JointLaw):
         p = most[:, None] * np.exp(s)
         k = super().stiffness(p, tabulated=True)[0] * self._ratio("k_n", p, most[:, None])
         curve = PressureCurve.of(p, k, self.table.fade)
-        turn = np.where(used, self._curve.approach(self.greatest), 0.0)
+        first = self._by_k_n if self.serves else self._curve
+        turn = np.where(used, first.approach(self.greatest), 0.0)
         parted = np.where(used, turn - np.exp(curve.log_w[:, -1]), 0.0)
         return UnloadingCurve(
-            first=self._curve, log_v=curve.log_w, log_p=curve.log_p, slope=curve.slope, parted=parted, turn=turn
+            first=first, log_v=curve.log_w, log_p=curve.log_p, slope=curve.slope, parted=parted, turn=turn
         )
 
     def stiffness(self, pressure: Array, *, tabulated: bool = False) -> tuple[Array, Array]:
@@ -73,3 +78,10 @@ def loaded_before(law: JointLaw, greatest: Array) -> JointLaw:
         return law
     own = {f.name: getattr(law, f.name) for f in fields(JointLaw)}
     return LoadedBefore(**own | {"_made": law.table}, greatest=greatest)
+
+
+def in_service(law: JointLaw, pressure: Array) -> JointLaw:
+    """The law of a joint under loads about a preload, under which its points bear pressures [Pa] (q,)."""
+    before = law.greatest if isinstance(law, LoadedBefore) else 0.0
+    found = loaded_before(law.first_loading, np.maximum(pressure, before))
+    return replace(found, serves=True) if isinstance(found, LoadedBefore) else found

@@ -163,7 +163,7 @@ def statics_of(base: Preloaded) -> LoadStatics:
         )
     pairs = [
         (joint.interface, LoadedContact.of(joint.interface, joint.law, s, base.preload.displacement, joint.friction))
-        for joint, s in zip(structure.joints, base.springs, strict=True)
+        for joint, s in zip(structure.in_service(base.preload).joints, base.springs, strict=True)
     ]
     return LoadStatics(
         stiffness=structure.coupled(base.springs)[0],
@@ -331,12 +331,12 @@ def _modes(
     if base.rest is None:
         return {}
     rest, shapes = base.rest
-    mass = base.structure.dynamic_matrices[1]
+    mass, serving = base.structure.dynamic_matrices[1], base.structure.in_service(base.preload)
     before = Weighted.of(shapes, mass)
     frequencies, alike = [], []
     for load, pressure in zip(loads, pressures, strict=True):
         progress.begin(f"modes under {load.name}")
-        here, moved = base.modes(base.structure.springs(list(pressure)))
+        here, moved = base.modes(serving.springs(list(pressure)))
         table = before.mac(Weighted.of(moved, mass)).T  # columns: modes under the load
         order = partners(table)
         frequencies.append(here[order])
