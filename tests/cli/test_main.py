@@ -192,13 +192,8 @@ def test_no_command_takes_a_path_that_no_file_can_have(command, name, said):
     ("options", "said"),
     [
         (["--z-unit", "um", "--D", "2.39"], "--z-unit: with --scan FILE alone"),
-        (["--stability"], "--stability: with --scan FILE alone"),
-        (["--method", "higuchi", "--D", "2.39"], "--method: with --scan FILE alone"),
+        (["--method", "mfdfa", "--D", "2.39"], "--method: with --scan FILE alone"),
         (["--D", "2.39", "--to", "abaqus", "--unit", "mm", "--json"], "--json: --to prints one law on first loading"),
-        (
-            ["--scan", str(EXAMPLES / "t-specimen" / "milled.x3p"), "--stability", "--csv", "q.csv"],
-            "--csv: --stability has",
-        ),
     ],
 )
 def test_options_of_law_that_do_not_apply_are_faults(options, said, capsys):

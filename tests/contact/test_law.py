@@ -8,7 +8,8 @@ import pytest
 from numpy.typing import ArrayLike
 
 import faying.contact
-from faying.contact import ContactLaw, Response, find_law, laws
+from faying.contact import ContactLaw, Response, laws
+from faying.contact.build import find
 from faying.errors import InputError, NotConverged
 
 
@@ -71,9 +72,9 @@ def test_with_changes_a_copy_and_knows_its_parameters() -> None:
 
 def test_laws_are_listed_and_found_by_any_spelling() -> None:
     assert laws()["JK"] is faying.JK
-    assert find_law("jk") is faying.JK
+    assert find("jk").law is faying.JK
     with pytest.raises(InputError, match="the known ones are"):
-        find_law("none")
+        find("none")
 
 
 @pytest.mark.parametrize("cls", laws().values(), ids=laws())

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import faying
-from faying.contact.two_faces import face_to_face, faces_of
+from faying.contact.two_faces import RELATED, face_to_face, faces_of
 from faying.errors import InputError
 from faying.surface.scan import Scan
 from tests.helpers.scans import gaussian
@@ -86,3 +86,15 @@ def test_a_rougher_pair_is_softer():
             for c in ("same", "smooth")
         )
         assert both / one == pytest.approx(2**-0.5, rel=0.02)
+
+
+@pytest.mark.parametrize("marks", [20, 21, 22])
+@pytest.mark.parametrize("turned", [False, True])
+def test_marks_along_a_side_neither_cancel_nor_double(marks, turned):
+    """Two like faces have the root of 2 of the rms of one; by where the scan ended it was 0.1 or 2 times."""
+    rows = np.arange(128)
+    heights = 1e-6 * np.cos(2 * np.pi * marks * rows / 128)[:, None] * np.ones(128)
+    heights = heights + 1e-7 * np.random.default_rng(marks).standard_normal(heights.shape)
+    scan = Scan(heights=heights.T if turned else heights, spacing=(30e-6, 30e-6))
+    both = faces_of(scan).unfitted.scan.heights
+    assert 1 - RELATED <= both.var() / (2 * scan.heights.var()) <= 1 + RELATED

@@ -12,6 +12,7 @@ import pytest
 
 import faying
 from faying import contact
+from faying.contact.build import find
 from faying.surface import synthesize
 
 ROOMS = ("surface", "contact", "halfspace", "materials", "distribution")
@@ -160,7 +161,6 @@ CALLS = {
     ),
     "RoughSurface": (contact.RoughSurface, {"inputs": INPUTS}),
     "build": (contact.build, {"name": "jk", "given": {}, "surface": ROUGH, "pair": PAIR}),
-    "find_law": (contact.find_law, {"name": "jk"}),
     "compare": (contact.compare, {"laws": {"JK": JK}, "pressure": 1e5}),
 }
 # public names that take nothing from a user, are made by the functions above, or are for those who write a model
@@ -331,14 +331,14 @@ def test_what_is_wrong_is_refused_and_nothing_else_fails(call, argument):
 NUMBERS = [
     (kind, name)
     for kind in ("jk", "gw", "persson", "cmy", "half-space")
-    for name, parameter in contact.find_law(kind).parameters.items()
+    for name, parameter in find(kind).law.parameters.items()
     if parameter.is_number
 ]
 
 
 @pytest.mark.parametrize(("kind", "name"), NUMBERS)
 def test_numbers_that_laws_declare_refuse_what_is_no_number(kind, name):
-    switch = contact.find_law(kind).parameters[name].is_switch
+    switch = find(kind).law.parameters[name].is_switch
     for odd in ("nan", "kilograms", "object", "array", "complex", *(() if switch else ("True",))):
         with pytest.raises(faying.InputError, match=name):
             MATES.law(kind, **{name: ODD[odd]})

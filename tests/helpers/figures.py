@@ -13,7 +13,6 @@ from faying.contact.figure import curves as law_curves
 from faying.distribution import Distribution
 from faying.form.fit import figure as form
 from faying.form.fit import fit_form
-from faying.halfspace import figure as half_space
 from faying.identify import prediction as predicting
 from faying.identify.identification import figure as identification
 from faying.identify.identify import identify_model
@@ -214,7 +213,7 @@ def scan():
 def overview(of):
     """The figure of `faying surface`, with three of its estimators."""
     return surface.overview_figure(
-        of, prepared(of), {name: fit_fractal(of, name) for name in ("psd", "structure", "higuchi")}
+        of, prepared(of), {name: fit_fractal(of, name) for name in ("psd", "structure", "mfdfa")}
     )
 
 
@@ -409,7 +408,6 @@ FIGURES = {
     "contact/figure.py:curves": laws,
     "contact/law_figure.py:law_plot": lambda: whole(LAW.plot()),
     "contact/figure.py:comparison_plot": lambda: whole(mates().compare_plot(laws=("jk", "gw", "persson"))),
-    "halfspace/figure.py:contact_figure": lambda: half_space.contact_figure(half_space_contact()),
     "halfspace/solution.py:plot": lambda: whole(half_space_contact().plot()),
     "measured/figure.py:identified": stabilised,
     "output/figures/sweep.py:figure, one axis": lambda: sweep.figure(swept("bolt.left_1.preload=1 kN:5 kN:5")),

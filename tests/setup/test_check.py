@@ -28,6 +28,7 @@ from faying.study.keys.geometry import mesh_of
 from tests.helpers import studies
 from tests.helpers.assemblies import bracket
 from tests.helpers.boxes import row
+from tests.helpers.examples import ROOT
 from tests.helpers.laps import lapped
 from tests.helpers.meshfiles import STUDY, abaqus
 from tests.helpers.preloads import pulled
@@ -479,3 +480,38 @@ def test_more_memory_than_there_is_comes_with_the_size_that_fits(folder, monkeyp
     again, _ = looked(folder, ('size = "5 mm"', f'size = "{size}"'))
     assert not again.faults
     assert again.expected.memory < need / 2
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (
+            {"bolt.preload": "1 kN", "tightening.order": ["bolt 1"]},
+            "tightening: bolts bolt 1 have no shank, so tightening others cannot change them",
+        ),
+        (
+            {"joint.springs": "per-node", "bolt.preload": ["1 kN", "3 kN", "1 kN"]},
+            "has springs per node, which remember no pressure",
+        ),
+    ],
+)
+def test_what_a_run_would_refuse_is_a_fault_of_the_study(changes, said):
+    study = faying.Study.read(ROOT / "examples" / "two-blocks" / "study.toml")
+    *first, (key, value) = changes.items()
+    for path, before in first:
+        study = study.with_(path, before)
+    with pytest.raises(faying.InputError, match=said):
+        study.with_(key, value)
+
+
+def test_more_modes_than_unknowns_are_a_fault(tmp_path):
+    study = ROOT / "examples" / "two-blocks" / "study.toml"
+    text = study.read_text().replace('"model.inp"', f'"{(study.parent / "model.inp").as_posix()}"')
+    assert "[modes]" in text
+    (tmp_path / "study.toml").write_text(
+        text.replace("[modes]\ncount = ", '[modes]\nsolver = "pardiso"\ncount = 100 # ')
+    )
+    assert not [one for one in check(tmp_path / "study.toml").findings if one.level == "fault"]
+    (tmp_path / "study.toml").write_text(text.replace("[modes]\ncount = ", "[modes]\ncount = 9999 # "))
+    (fault,) = [one for one in check(tmp_path / "study.toml").findings if one.level == "fault"]
+    assert "ask for fewer modes" in fault.text

@@ -333,7 +333,7 @@ def test_other_faults(folder, text, fault):
 
 
 def test_order_and_passes(folder):
-    two = [BOLT | {"preload": "1 kN"}, BOLT | {"name": "b2", "preload": "1 kN"}]
+    two = [BOLT | SHANK | {"preload": "1 kN"}, BOLT | SHANK | {"name": "b2", "preload": "1 kN"}]
     assert study(folder, '[tightening]\norder = ["b2", "b1"]\npasses = 2', bolt=two).preloads[0].order == (1, 0, 1, 0)
     assert study(folder).preloads[0].order is None
 

@@ -7,7 +7,7 @@ import pytest
 
 import faying
 from faying.answer.run import run
-from faying.case.case import build
+from faying.case.case import Case, build
 from faying.case.changed import TOLERANCE
 from faying.form.form import Form
 from faying.form.waviness import ASSUMED, GAUSSIAN, PROCESSES
@@ -181,3 +181,15 @@ def test_one_load_has_a_band_without_slopes(coarse):
     assert result.waves.slopes is None
     assert result.waves.frequencies.shape == (4, 1, 4)
     assert np.all(np.ptp(result.waves.frequencies[:, 0], axis=0) > 0)
+
+
+def test_a_wave_that_the_mesh_cannot_follow_is_noted(path):
+    """Its points fall anywhere on a wave of 2 mm on elements of 10: k_n moved by half for a tenth of the length."""
+
+    def codes(length):
+        study = with_form(path, f'wave = "2 um"\nwave_length = "{length}"')
+        return [note.text for note in Case.of(study).notes if note.code == "waves-mesh"]
+
+    (said,) = codes("2 mm")
+    assert "do not follow a wave of 2 mm; the mesh carries" in said
+    assert not codes("200 mm")

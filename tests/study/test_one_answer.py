@@ -183,7 +183,7 @@ def test_the_options_that_say_otherwise_have_one_meaning_too(folder):
 def test_commands_print_the_mates_once(folder):
     words = ["--scan", str(folder / "milled part.x3p"), "--material", "45 steel", "--pressure", "5 MPa"]
     line = "mates: both faces as milled part.x3p, unrelated; 45 steel on 45 steel"
-    for more in (["--model", "jk"], ["--models", "gw,persson"], ["--stability", "--model", "persson"]):
+    for more in (["--model", "jk"], ["--models", "gw,persson"], ["--model", "persson"]):
         out = CliRunner().invoke(law_command, [*words, *more], catch_exceptions=False, standalone_mode=False).output
         assert out.splitlines().count(line) == 1
     plan = study(folder, {"scan": "milled part.x3p"}, "jk")

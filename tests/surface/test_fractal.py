@@ -41,7 +41,7 @@ def test_spectral_estimators_are_unbiased_and_their_intervals_hold(method, H):
 
 @pytest.mark.parametrize(
     ("method", "bias"),
-    [("structure", 0.1), ("roughness-length", 0.12), ("higuchi", 0.1), ("mfdfa", 0.05)],
+    [("structure", 0.1), ("mfdfa", 0.05)],
 )
 def test_other_estimators_are_as_far_off_as_the_table_says_and_say_so(method, bias):
     error, fits = many(method, 0.6, 4, 256)
@@ -172,8 +172,8 @@ def test_a_smooth_surface_is_called_not_fractal():
     assert fit.warnings
 
 
-@pytest.mark.parametrize(("order", "integrated"), [(1, False), (2, True)])
-def test_window_transfer_is_what_windows_of_noise_leave(order, integrated):
+@pytest.mark.parametrize("order", [1, 2])
+def test_window_transfer_is_what_windows_of_noise_leave(order):
     # a wave of u cycles in a window of many points, its polynomial removed by least squares
     n, u = 4000, 1.37
     t = (np.arange(n) + 0.5) / n
@@ -182,7 +182,7 @@ def test_window_transfer_is_what_windows_of_noise_leave(order, integrated):
     left = np.mean((x - basis @ (basis.T @ x)) ** 2) * 2
     cycles, share = share_left(order)
     assert np.interp(u, cycles, share) == pytest.approx(left, abs=1e-4)
-    assert window_transfer(2.5, order, integrated) > 0
+    assert window_transfer(2.5, order) > 0
 
 
 @pytest.mark.slow

@@ -79,7 +79,7 @@ class Runs:
     def compared(self, first: str, second: str, preload: str = "") -> dict[str, Any]:
         """Compare two runs: what differs in their studies, modes and joints, a figure, notes.
 
-        preload: at which, as text; "" for the greatest that both have.
+        preload: at which, as text; "" for the last that both have.
 
         Raises:
             InputError: there is no such run or preload, or a run cannot be read.

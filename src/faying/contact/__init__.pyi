@@ -1,6 +1,6 @@
 # The public names of faying.contact; __init__.py imports each when it is first used.
 from . import asperity
-from .build import build, find_law, laws
+from .build import build, laws
 from .compare import Comparison, compare
 from .inputs import FractalSurface, RoughSurface, SurfaceInputs
 from .law import ContactLaw, Response
@@ -45,6 +45,5 @@ __all__ = [
     "asperity",
     "build",
     "compare",
-    "find_law",
     "laws",
 ]

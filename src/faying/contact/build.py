@@ -109,11 +109,6 @@ def find(name: str) -> LawKind:
     return kind
 
 
-def find_law(name: str) -> type[ContactLaw]:
-    """Return the class of the law called `name`; see `find`."""
-    return find(name).law
-
-
 def build(
     name: str | LawKind, given: Mapping[str, object], surface: RoughSurface | None, pair: ContactPair
 ) -> ContactLaw:

@@ -104,11 +104,9 @@ class Superelement(Summary):
         if program in IN_SI and (unit, force_unit) != ("m", "N"):
             raise InputError(f"{program} is written in SI units; leave out the units {unit} and {force_unit}")
         if program == "fmu":
-            lowest = float(self.frequencies.min(initial=self.up_to))
-            title = f"{self.study} at {load_text(self.load)}"
-            return write_fmu(
-                Path(folder), title, self.names, self.dofs, self.stiffness, self.mass, self.loss, lowest=lowest
-            )
+            lowest, title = float(self.frequencies.min(initial=self.up_to)), f"{self.study} at {load_text(self.load)}"
+            matrices = self.stiffness, self.mass, self.loss
+            return write_fmu(Path(folder), title, self.names, self.dofs, *matrices, lowest=lowest)
         entries = self.dofs + np.array([node - 1, 0])
         if program == "npz":
             return Assembled(

@@ -86,7 +86,7 @@ def _at_test(result: Result, folder: Path) -> list[Path]:
 
 
 def _losses(result: Result) -> Array:
-    """Loss factors at the greatest preload; where the laws give none, twice the damping at the middle level, or 0."""
+    """Loss factors at the last preload; where the laws give none, twice the damping at the middle level, or 0."""
     losses: Array = result.loss_factors[-1]
     if result.levels is None:
         return np.nan_to_num(losses)

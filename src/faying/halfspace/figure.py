@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from faying.halfspace.maps import ContactMaps
-from faying.style import WIDE, drawing, new_panels
+from faying.style import drawing
 
 # colours that stay apart in grey and for colour-blind eyes
 STATES = (("open", "#f2f2f2"), ("elastic", "#56b4e9"), ("at hardness", "#a03c00"))
@@ -66,13 +66,3 @@ def pressure_map(ax: Any, contact: ContactMaps) -> Any:
     drawn = _picture(ax, contact, shown, title, cmap="viridis_r", vmin=0)
     ax.figure.colorbar(drawn, ax=ax, label="pressure [MPa]", shrink=0.8)
     return ax
-
-
-@drawing
-def contact_figure(contact: ContactMaps) -> Any:
-    """Return a figure with the contact's states beside its pressures."""
-    fig = new_panels(2, width=WIDE / 2, height=3.6)
-    left, right = fig.axes
-    contact_map(left, contact)
-    pressure_map(right, contact)
-    return fig

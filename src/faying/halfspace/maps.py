@@ -100,12 +100,6 @@ class ContactMaps(Summary):
         return float((across * dy + down * dx) / (nx * ny * dx * dy))
 
     @property
-    def perimeter(self) -> float:
-        """Length of the border of the contact, counted along cell sides, per map area [1/m]."""
-        touching = self.traction > 0
-        return self._border(touching, ~touching)
-
-    @property
     def area_corrected(self) -> float:
         """Real area freed of the excess of cells that touch in part [-].
 

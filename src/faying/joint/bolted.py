@@ -25,6 +25,7 @@ from faying.joint.joint import FittedJoint, Joint, each_pair_once, known_face
 from faying.joint.joint_law import JointLaw, all_predict_loss
 from faying.joint.loaded_before import in_service, loaded_before
 from faying.joint.preload import PreloadProblem
+from faying.joint.preload_case import NO_MEMORY
 from faying.joint.springs import Springs
 from faying.materials import STIFFEST, Material, material_of
 from faying.misuse import checked_call, shortened
@@ -308,10 +309,7 @@ class BoltedStructure(Summary):
         if carried:
             per_node = [joint.name for joint in self.joints if joint.per_node]
             if per_node:
-                raise InputError(
-                    f"joint {per_node[0]!r} has springs per node, which remember no pressure: leave springs out of it, "
-                    "or give preloads that rise"
-                )
+                raise InputError(NO_MEMORY.format(per_node[0]))
             laws = [loaded_before(law, most) for law, most in zip(laws, carried, strict=True)]
         elif all(law is joint.law for law, joint in zip(laws, self.joints, strict=True)):
             return self

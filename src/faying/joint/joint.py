@@ -14,13 +14,14 @@ from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
-from faying.form.waviness import LaidWaves
+from faying.form.waviness import NODES, LaidWaves
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
 from faying.materials import MOST_FRICTION
 from faying.misuse import checked_call
 from faying.notes import Note
 from faying.typing import Array, Mask
+from faying.units import show
 
 MAX_TANGENTIAL = 2.0  # greatest k_t/k_n [-]
 SAME_MODULUS = 0.02  # relative difference of E* from which the materials of a law are not those of the parts
@@ -247,13 +248,20 @@ def with_form(
 
     Raises InputError where the waves do not fit.
     """
-    if form.waviness is None:
-        return form.on(interface, mesh, faces), []
-    waviness = form.waviness
+    notes, waviness = list[Note](), form.waviness
+    least = NODES * FaceAxes.of(mesh, faces, interface, form.along).spacing if form.wave or waviness else 0.0
+    if form.wave and form.wave_length and form.wave_length < least:
+        text = (
+            f"{name}: the points of the joint do not follow a wave of {show(form.wave_length, 'm')}; the mesh carries "
+            f"{show(least, 'm')} ({NODES} nodes of the coarser face in a wave). Take finer elements on the faces"
+        )
+        notes.append(Note(code="waves-mesh", joint=name, text=text))
+    if waviness is None:
+        return form.on(interface, mesh, faces), notes
     laid = LaidWaves.of(waviness, FaceAxes.of(mesh, faces, interface, form.along))
     text = f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw gives other frequencies. "
     text += f"faying sweep over joint.{name}.form.waviness_seed, or faying predict, says how far draws differ"
-    notes = [Note(code="waves", joint=name, text=text)]
+    notes.append(Note(code="waves", joint=name, text=text))
     if laid.missing_share > 0:
         notes.append(Note(code="waves-mesh", joint=name, text=f"{name}: {laid.mesh_limit()}"))
     return form.on(interface, mesh, faces), notes

@@ -10,6 +10,10 @@ from faying.errors import InputError
 from faying.typing import Array
 from faying.units import load_text
 
+NO_SHANK = "bolts {} have no shank, so tightening others cannot change them; give diameter and material, or no order"
+NO_MEMORY = (
+    "joint {!r} has springs per node, which remember no pressure: leave springs out of it, or give preloads that rise"
+)
 SAME = 1e-3  # relative: messages and tables give a preload with four digits, and what they print is found again
 
 

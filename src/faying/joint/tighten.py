@@ -8,6 +8,7 @@ import numpy as np
 from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import Equilibrium, PreloadState
+from faying.joint.preload_case import NO_SHANK
 from faying.typing import Array
 
 BALANCED = 1e-9  # of the load: what is out of balance then moves pressures by some 1e-10 of the greatest
@@ -42,10 +43,7 @@ def tighten(
         )
     soft = [bolt.bolt.name for bolt in bolts if bolt.stiffness is None]
     if soft:
-        raise InputError(
-            f"bolts {', '.join(soft)} have no shank, so tightening others cannot change them; give diameter and "
-            "material, or leave out the order"
-        )
+        raise InputError(NO_SHANK.format(", ".join(soft)))
     tight: dict[int, tuple[float, Array]] = {}  # force and displacement when the bolt was let go
     found: PreloadState | None = None
     for turn in order:

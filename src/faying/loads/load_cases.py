@@ -48,7 +48,7 @@ def load_cases(
     Args:
         what: A study or its file, or a state that `Structure.solve` gave.
         loads: The cases; those of the study where None.
-        preload: Which preload of the study, force of the first bolt [N] or text such as "8 kN"; the greatest where
+        preload: Which preload of the study, force of the first bolt [N] or text such as "8 kN"; the last where
             None. A state has its own.
         modes: Whether to find the modes about each loaded state.
         intervals: Whether to find 90 % intervals of bolt forces, use of friction and opening, where the preload

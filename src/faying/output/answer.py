@@ -21,7 +21,7 @@ MIN_GAIN = 5e-3  # by how much narrower an interval gets [-], below which the ta
 
 
 def answer(result: Result) -> Rows:
-    """One row per mode at the greatest preload: its motion, best estimate with interval, as modelled, and what follows.
+    """One row per mode at the last preload: its motion, best estimate with interval, as modelled, and what follows.
 
     That is the change with preload, and damping.
     """
@@ -69,7 +69,7 @@ def damping_line(result: Result) -> str:
 
 
 def lead(result: Result) -> str:
-    """The answer in two or three sentences: the modes at the greatest preload, how the test lies, what limits it."""
+    """The answer in two or three sentences: the modes at the last preload, how the test lies, what limits it."""
     interval = result.interval
     where = f"At {result.load_names[-1]}" if result.bolts else "Without bolts,"
     f = result.frequencies[-1] if interval is None else interval.best[-1]
@@ -107,7 +107,7 @@ def _digits(low: float, high: float) -> int:
 
 
 def moves(result: Result, mode: int) -> str:
-    """Which part moves most at the greatest preload, and along which axis."""
+    """Which part moves most at the last preload, and along which axis."""
     return ", ".join(filter(None, part_and_axis(result, mode)))
 
 
@@ -127,14 +127,14 @@ def limit(result: Result) -> str:
 
 
 def gains(interval: Interval) -> dict[str, Array]:
-    """How much narrower each mode's interval at the greatest preload is (m,) [-] with one source known better each."""
+    """How much narrower each mode's interval at the last preload is (m,) [-] with one source known better each."""
     width = interval.width[-1]
     known = {name: SCATTER[name] for name in interval.sources if SCATTER[name].remedy}
     return {name: 1 - interval.narrowed_width({name: one.left})[-1] / width for name, one in known.items()}
 
 
 def shares(result: Result) -> Rows:
-    """One row per mode at the greatest preload: width of its interval, and the share of each source in its square."""
+    """One row per mode at the last preload: width of its interval, and the share of each source in its square."""
     interval = result.interval
     if interval is None:
         return []
@@ -146,7 +146,7 @@ def shares(result: Result) -> Rows:
 def narrowing(result: Result) -> Rows:
     """One row per source that can be known better, the best first: what to do, and how much narrower the intervals get.
 
-    Of the median mode, and of the mode that gains most, at the greatest preload. What narrows no mode by half a per
+    Of the median mode, and of the mode that gains most, at the last preload. What narrows no mode by half a per
     cent is left out.
     """
     interval = result.interval

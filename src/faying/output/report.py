@@ -196,7 +196,7 @@ MAPS = (
     "relative to the greatest of the mode."
 )
 SHAPES = (
-    "Mode shapes at the greatest preload, drawn at one scale; colour is the motion over the greatest of the mode. "
+    "Mode shapes at the last preload, drawn at one scale; colour is the motion over the greatest of the mode. "
     "Names: what most of the motion is, in slices across the longest side, or the part that moves most and its axis."
 )
 TEST = "test_"  # the figures of the hammer test begin with it
@@ -225,7 +225,7 @@ def _on_axes(draw: Callable[[Any, Result], Any]) -> Callable[[Result], Any]:
 INTERVALS = ReportFigure(
     name="intervals",
     draw=interval_figure.intervals,
-    caption="Left: best estimate and 5 to 95 % of each frequency at the greatest preload about the value as modelled, "
+    caption="Left: best estimate and 5 to 95 % of each frequency at the last preload about the value as modelled, "
     "and the test where there is one. Right: what makes the interval, in shares of its variance.",
     applies=lambda result: result.interval is not None,
 )
@@ -243,7 +243,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
         ReportFigure(
             name="pressure",
             draw=lambda result: structure.faces(result, "pressure"),
-            caption="Pressure where the faces of each joint touch, at the least and the greatest preload. Grey: open; "
+            caption="Pressure where the faces of each joint touch, at the first and the last preload. Grey: open; "
             "the line is the edge of contact.",
             applies=lambda result: bool(result.joints),
         ),
@@ -257,7 +257,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
         ReportFigure(
             name="law",
             draw=_on_axes(structure.law_curves),
-            caption="Stiffness per area over the pressures that the joints reach at the greatest preload.",
+            caption="Stiffness per area over the pressures that the joints reach at the last preload.",
             applies=lambda result: bool(result.joints),
         ),
         "surfaces",
@@ -276,7 +276,7 @@ CHAPTERS: Mapping[str, tuple[str | ReportFigure, ...]] = {
         ReportFigure(
             name="damping",
             draw=interval_figure.damping_levels,
-            caption="Damping ratio of each mode at levels of acceleration, at the greatest preload: slip in the joints "
+            caption="Damping ratio of each mode at levels of acceleration, at the last preload: slip in the joints "
             "and the damping at rest.",
             applies=lambda result: result.levels is not None,
         ),

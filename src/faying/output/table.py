@@ -62,7 +62,7 @@ def ranges(result: Result) -> Rows:
 
 
 def damping(result: Result) -> Rows:
-    """One row per mode: damping at each level at the greatest preload, with both ends; empty where there is none."""
+    """One row per mode: damping at each level at the last preload, with both ends; empty where there is none."""
     found = result.levels
     if found is None:
         return []
@@ -74,7 +74,7 @@ def damping(result: Result) -> Rows:
 
 
 def damping_at(found: Levels, level: int, mode: int) -> str:
-    """Low, median and high damping ratio [%] of a mode at one level, at the greatest preload."""
+    """Low, median and high damping ratio [%] of a mode at one level, at the last preload."""
     return " .. ".join(f"{100 * one[-1, level, mode]:.2g}" for one in (found.low, found.damping, found.high)).replace(
         "nan", "-"
     )
@@ -103,7 +103,7 @@ def above_range(result: Result) -> Rows:
 
 
 def laws(result: Result) -> Rows:
-    """One row per law at the greatest preload, the study's own first; empty where there is no other law.
+    """One row per law at the last preload, the study's own first; empty where there is no other law.
 
     Where each law ends, the share of the joints beyond that, the share of their stiffness outside its validity range.
     Of the modes that differ most between the laws the frequency with its loss factor; two frequencies where it matters
@@ -290,7 +290,7 @@ def bolting_head(result: Result) -> str:
 
 
 def modal_forces(result: Result) -> Rows:
-    """One row per mode at the greatest preload: force in each bolt per um of motion where the mode moves most."""
+    """One row per mode at the last preload: force in each bolt per um of motion where the mode moves most."""
     b = result.bolt_numbers
     if b is None or not np.isfinite(b.modal_force).any():
         return []

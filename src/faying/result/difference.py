@@ -186,7 +186,7 @@ def compare_runs(first: Result, second: Result, preload: float | str | None = No
     Args:
         first: the result that differences are counted from.
         second: the other.
-        preload: of both [N], or text with a unit; the greatest that both have where None, else the greatest of each.
+        preload: of both [N], or text with a unit; the last that both have where None, else the last of each.
 
     Returns:
         The comparison; `shared_preloads` says at which others the two may be compared.

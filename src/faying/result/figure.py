@@ -66,7 +66,7 @@ def face_map(ax: Any, result: RunRecord, field: str, load: int = -1, joint: int 
 
 @drawing
 def faces(result: RunRecord, field: str) -> Any:
-    """Return a figure of pressure or slip on each joint at the least and the greatest preload."""
+    """Return a figure of pressure or slip on each joint at the first and the last preload."""
     loads = sorted({0, len(result.loads) - 1})
     tall = []
     for joint in range(len(result.joints)):
@@ -259,7 +259,7 @@ def shape_words(result: RunRecord, mode: int, load: int = -1) -> str:
 
 @drawing
 def law_curves(ax: Any, result: RunRecord) -> Any:
-    """Draw the stiffness of the joints' points against their pressure at the greatest load, open points left out."""
+    """Draw the stiffness of the joints' points against their pressure at the last load, open points left out."""
     pressure = result.pressure[-1]
     groups: dict[str, list[int]] = {}
     for joint, (surface, law) in enumerate(zip(result.surfaces, result.laws, strict=True)):

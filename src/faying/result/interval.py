@@ -82,12 +82,12 @@ class Interval(Arrays):
         return replace(self, low=np.minimum(low, best), best=best, high=np.maximum(high, best))
 
     def summary(self) -> tuple[str, dict[str, str]]:
-        """Return 5 %, the best estimate and 95 % of each mode at the greatest preload."""
+        """Return 5 %, the best estimate and 95 % of each mode at the last preload."""
         ends = zip(self.low[-1], self.best[-1], self.high[-1], strict=True)
         texts = [" .. ".join(f"{one:.4g}" for one in three) for three in ends]
         rows = {f"mode {k}": text for k, text in enumerate(texts[:MAX_ROWS], 1)}
         rows |= {"": f"{len(texts) - MAX_ROWS} more modes"} if len(texts) > MAX_ROWS else {}
-        return "5 % .. best estimate .. 95 % [Hz] at the greatest preload", rows
+        return "5 % .. best estimate .. 95 % [Hz] at the last preload", rows
 
     @property
     def _squares(self) -> Array:

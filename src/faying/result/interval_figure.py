@@ -32,7 +32,7 @@ SOURCES = {
 
 @drawing
 def intervals(result: "Result") -> Any:
-    """Return the figure of the intervals at the greatest preload.
+    """Return the figure of the intervals at the last preload.
 
     Left: best estimate and 5 to 95 % of each frequency over the value as modelled, with the frequencies of the test and
     of bonded faces.
@@ -84,7 +84,7 @@ def _shown(ax: Any, low: Any, high: Any) -> tuple[float, float]:
 
 
 def _test(ax: Any, result: "Result") -> None:
-    """Mark the measured frequencies of the greatest preload at the modes that they are paired with."""
+    """Mark the measured frequencies of the last preload at the modes that they are paired with."""
     score, c = Score.of(result), result.comparison
     if score is None or c is None:
         return

@@ -25,7 +25,7 @@ class Result(RunRecord):
     was made from and its own numbers. low and high: the frequencies at the ends of the range of stiffness that the
     laws state, None where none states one. `interval`, `levels`, `waves`, `above_range` and `alternatives` are
     groups of what belongs together, each None where the study does not ask for it. `backbones` are the curves over
-    amplitude that the study asks for, at the greatest preload; `vibrations` what it does in service, one after
+    amplitude that the study asks for, at the last preload; `vibrations` what it does in service, one after
     another at each preload. `carried` is the greatest preload that the joints carried before each, None where all
     are first loading; `settled` says that this was the greatest of the study.
     `tightening` names the bolts in the order in which they were pulled, and is empty where all were pulled at once.

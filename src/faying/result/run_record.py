@@ -337,7 +337,7 @@ class RunRecord(Recorded):
 
     @checked_call
     def modes_at(self, load: float | str | None = None, source: str = "this study") -> ModelModes:
-        """The modes at a preload [N], by default the greatest, for a comparison with a test.
+        """The modes at a preload [N], by default the last, for a comparison with a test.
 
         Raises InputError where there is no such load.
         """

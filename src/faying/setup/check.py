@@ -24,6 +24,7 @@ from faying.joint.strength import bolt_notes, material_notes
 from faying.memory import available
 from faying.misuse import checked_call
 from faying.notes import Note
+from faying.numerics.solve import chosen as factorisation
 from faying.progress import duration
 from faying.setup.bolt_proposal import MAX_NAMES, grouped
 from faying.setup.edit import key_of, line_of, line_of_fault, lines_of
@@ -326,6 +327,10 @@ def _expected(
     key = "geometry.mesh" if spec.mesh is not None else "geometry.size"
     unknowns = mesh.unknowns if mesh is not None else unknowns_of(facts, spec.size, spec.face_size, named)
     expected = Expected.of(study, unknowns, counted=mesh is not None)
+    found.tried("solver", "modes.solver", partial(factorisation, study.modes.solver))
+    if study.modes.count > unknowns:
+        text = f"modes.count = {study.modes.count}: the structure has {unknowns:,} unknowns; ask for fewer modes"
+        found.add("fault", "expected", text, "modes.count")
     free = available()
     about = "" if mesh is not None else "about "
     text = f"{about}{unknowns:,} unknowns, {expected.memory / 1e9:.2g} GB, {duration(max(expected.seconds, 1.0))}"

@@ -13,7 +13,7 @@ from faying.bolt.solid_bolt import SolidBolt
 from faying.errors import InputError, ReadError
 from faying.joint.attachments import PointMass, Support
 from faying.joint.modal import ModesChoice
-from faying.joint.preload_case import PreloadCase, after_greatest, each_once, with_history
+from faying.joint.preload_case import NO_MEMORY, NO_SHANK, PreloadCase, after_greatest, each_once, with_history
 from faying.materials import Material
 from faying.misuse import checked_call, shortened
 from faying.study.declaration.declared import NAME, Declared, Inner, Key
@@ -286,7 +286,7 @@ class Study(Summary):
             joints=joints,
             bonds=bonds,
             bolts=bolts,
-            preloads=_preloads(forces, order, joints),
+            preloads=_preloads(forces, order, joints, bolts),
             modes=modes,
             response=response,
             test=test,
@@ -352,11 +352,21 @@ def _note_states(faults: Faults, joints: tuple[JointChoice, ...]) -> None:
 
 
 def _preloads(
-    forces: tuple[tuple[float, ...], ...], order: tuple[int, ...] | None, joints: tuple[JointChoice, ...]
+    forces: tuple[tuple[float, ...], ...],
+    order: tuple[int, ...] | None,
+    joints: tuple[JointChoice, ...],
+    bolts: tuple[Bolt | SolidBolt, ...],
 ) -> tuple[PreloadCase, ...]:
     """The preloads with what the joints carried before each, from the forces [N] of each bolt."""
+    soft = [bolt.name for bolt in bolts if isinstance(bolt, Bolt) and bolt.diameter is None]
+    if order is not None and soft:
+        raise InputError(f"tightening: {NO_SHANK.format(', '.join(soft))}")
     cases = [PreloadCase(forces=one, order=order) for one in (zip(*forces, strict=True) if forces else [()])]
-    return (after_greatest if any(joint.state == "settled" for joint in joints) else with_history)(cases)
+    found = (after_greatest if any(joint.state == "settled" for joint in joints) else with_history)(cases)
+    per_node = [joint.name for joint in joints if joint.springs == "per-node"]
+    if per_node and any(case.after for case in found):
+        raise InputError(NO_MEMORY.format(per_node[0]))
+    return found
 
 
 def _note_lacking_laws(

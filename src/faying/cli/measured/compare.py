@@ -45,7 +45,7 @@ def show_two_runs(files: tuple[Path, Path], load: str | None, out: Path | None, 
 @click.command()
 @click.argument("result", type=PATH)
 @click.argument("other", type=PATH)
-@click.option("--load", help='Preload to compare at, for example "8 kN". Default: the greatest; of two results, each.')
+@click.option("--load", help='Preload to compare at, for example "8 kN". Default: the last; of two results, each.')
 @click.option("--points", type=PATH, help="CSV table of the test's positions: point,x [mm],y [mm],z [mm].")
 @click.option(
     "--frame",

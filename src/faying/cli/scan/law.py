@@ -102,7 +102,6 @@ OF_NUMBERS = ("D", "G", "G_majumdar_bhushan", "scan_area", "side")  # what laws 
 @click.option("--method", default="psd", show_default=True, help="Estimator of D and G; `faying surface` lists them.")
 @click.option("--models", metavar="LIST", help='Several laws of the scan, for example "jk,gw,gw-ke,persson".')
 @click.option("--all-models", is_flag=True, help="All laws of a scan, with their ratio to the half-space.")
-@click.option("--stability", is_flag=True, help="k_n on parts of the scan and on fewer points, at the middle pressure.")
 @click.option("--conductance", is_flag=True, help="Also the thermal conductance h from k_n, for clean metal in vacuum.")
 @click.option(
     "--to",
@@ -123,7 +122,6 @@ def command(
     plot: str | None,
     models: str | None,
     all_models: bool,
-    stability: bool,
     after: str | None,
     program: str | None,
     unit: str | None,
@@ -139,13 +137,11 @@ def command(
 
     on_scan = options["scan"] is not None
     if not on_scan:
-        refuse_given({*OF_SCAN, "stability", "method"}, "with --scan FILE alone")
-    if stability:
-        refuse_given({"csv_file", "plot", "conductance", "after"}, "--stability has a table of its own")
+        refuse_given({*OF_SCAN, "method"}, "with --scan FILE alone")
     if models or all_models:
         refuse_given({"after"}, "for one law")
     if program:
-        others = {"models", "all_models", "after", "csv_file", "plot", "as_json", "conductance", "stability"}
+        others = {"models", "all_models", "after", "csv_file", "plot", "as_json", "conductance"}
         refuse_given(others, "--to prints one law on first loading")
     if (program is None) is not (unit is None):
         raise InputError('--to takes --unit, such as "mm"')
@@ -155,11 +151,6 @@ def command(
     mates = mates_of(options, kind, pair)
     pressures = pressures_of(pressure or PRESSURES)
     several = None if all_models else [name for name in (models or "").split(",") if name.strip()]
-    if stability and mates is not None:
-        labels = [kind.label] if several == [] else list(mates.laws(several)[0])
-        given = given_of(kind, options, settings, mates)
-        click.echo(law_table.stability(mates, labels, given, float(pressures[len(pressures) // 2]), as_json))
-        return
     if models or all_models:
         if mates is None or not on_scan or settings:
             raise InputError("--models and --all-models take every input from a scan: give --scan FILE and no --set")

@@ -12,9 +12,7 @@ import click
 
 from faying.cli.options import quantity
 from faying.cli.progress import Shown
-from faying.errors import FayingError
 from faying.files import write_text
-from faying.output import terminal
 from faying.output.terminal import folded
 from faying.text import csv_text, json_text
 from faying.units import show as unit
@@ -73,40 +71,6 @@ def watched(mates: Mates) -> Iterator[Mates]:
     """The mates, with a bar on the terminal that follows the contacts that are solved on their scan."""
     with Shown("law") as report:
         yield mates.watched(lambda done, total: report("contact of the scan", done, total))
-
-
-def stability(mates: Mates, names: list[str], given: dict[str, Any], pressure: float, as_json: bool) -> str:
-    """One row per law: k_n on the whole scan, and the factors by which parts and fewer points move it."""
-    from faying.contact.stability import CASES, UNSTABLE
-    from faying.contact.stability import stability as stability_of
-
-    found, without = [], []
-    for name in names:
-        try:
-            found.append(stability_of(mates, model=name, given=given, pressure=pressure))
-        except FayingError as fault:
-            without.append(f"left out: {name}: {fault}")
-    if as_json:
-        rows = {
-            one.label: {"k_n": {name: quantity(v if v == v else None, "Pa/m") for name, v in one.k_n.items()}}
-            | {"stable": one.stable}
-            for one in found
-        }
-        tree = {"mates": mates.line, "pressure": quantity(pressure, "Pa"), "laws": rows, "left out": without}
-        return json_text(tree)
-    lines = [f"mates: {mates.line}", ""]
-    lines += [f"k_n at {pressure * 1e-6:.4g} MPa, and what multiplies it on parts of the scan", ""]
-    lined = [["law", "k_n [MPa/um]", *CASES[1:], ""]]
-    for one in found:
-        cells = ["-" if f != f else f"{f:.3g}" for f in (one.factors[name] for name in CASES[1:])]
-        lined.append([one.label, f"{one.k_n[CASES[0]] * 1e-12:.4g}", *cells, "" if one.stable else "*"])
-    lines += terminal.text(lined).splitlines()
-    if not all(one.stable for one in found):
-        lines += [
-            "",
-            f"* moves by more than {UNSTABLE:.0%}: this stiffness belongs to the window or the resolution too",
-        ]
-    return "\n".join([*lines, *without])
 
 
 def document(inputs: Any, comparison: Comparison, heat: dict[str, Array]) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from faying.typeset import typeset
 
 @drawing
 def narrowing(result: Result) -> Any:
-    """Return the figure of how much narrower the intervals get at the greatest preload, one source known better each.
+    """Return the figure of how much narrower the intervals get at the last preload, one source known better each.
 
     A bar is the median mode, a dot each mode. Raises InputError for a result without intervals.
     """

@@ -42,18 +42,18 @@ def share_left(order: int) -> tuple[Array, Array]:
     return u, np.where(x < 0.05, (2 * k + 1) * x ** (2 * k) / double**2, left)
 
 
-def window_transfer(D: float, order: int, integrated: bool) -> float:
-    """Integral of u^-(7-2D) T(u) du, T the share of a wave of u cycles left when a window's polynomial is removed.
+def window_transfer(D: float, order: int) -> float:
+    """Integral of u^-(7-2D) T(u) / (2 pi u)^2 du, T the share of a summed wave left when a polynomial is removed.
 
-    T(u) = 1 - sum_k (2k+1) j_k(pi u)^2 over k = 0 .. order, j_k the spherical Bessel functions. With `integrated` the
-    wave has been summed first, which divides its power by (2 pi u)^2. In this unit the window has length 1.
+    T(u) = 1 - sum_k (2k+1) j_k(pi u)^2 over k = 0 .. order, j_k the spherical Bessel functions, of a wave of u cycles
+    in a window of length 1.
     """
     u, left = share_left(order)
-    power = 7 - 2 * D + (2 if integrated else 0)
+    power = 9 - 2 * D
     total = float(np.trapezoid(u ** (1 - power) * left, np.log(u)))
     # beyond the last u, T is 1
     total += float(u[-1]) ** (1 - power) / (power - 1)
-    return float(total / (2 * pi) ** 2) if integrated else total
+    return float(total / (2 * pi) ** 2)
 
 
 def fluctuation(lines: Array, size: int, order: int) -> Array:
@@ -69,20 +69,20 @@ def fluctuation(lines: Array, size: int, order: int) -> Array:
     return np.asarray(np.maximum(np.concatenate(total), 1e-300), float)
 
 
-def in_windows(order: int, integrated: bool) -> Local:
-    """Return the local estimator of windows about polynomials of `order`, of the heights or of their running sum."""
+def in_windows(order: int) -> Local:
+    """Return the local estimator of windows about polynomials of `order`, of the running sum of the heights."""
 
     def local(z: Array, known: Mask, steps: tuple[float, ...], low: float, high: float) -> tuple[float, float]:
         found = []
         for lines, step in rows_of(z, steps):
-            work = np.cumsum(lines - lines.mean(axis=1, keepdims=True), axis=1) * step if integrated else lines
+            work = np.cumsum(lines - lines.mean(axis=1, keepdims=True), axis=1) * step
             sizes = sizes_of(low, min(high, lines.shape[1] * step / 2), step)
             x = np.log(np.array(sizes) * step)
             y = np.array([log(float(fluctuation(work, s, order).mean())) for s in sizes])
             slope, intercept = np.polyfit(x, y, 1)
-            D = 3 - slope / 2 + (1.0 if integrated else 0.0)
+            D = 4 - slope / 2
             # F^2 = B w^(6-2D) (w^2) kappa(D)
-            level = intercept - log(window_transfer(inside(D), order, integrated)) - cut_log(inside(D), z.ndim == 2)
+            level = intercept - log(window_transfer(inside(D), order)) - cut_log(inside(D), z.ndim == 2)
             found.append((D, level))
         return mean_law(found, low, high)
 
@@ -130,46 +130,12 @@ def by_structure(ready: Prepared, limits: Limits, c: float) -> Estimate:
     return through_parts(ready, c, local, size_band(ready, limits, 3, 1 / 16), "the structure function")
 
 
-def by_roughness_length(ready: Prepared, limits: Limits, c: float) -> Estimate:
-    """Rms residual about a straight line in windows of w along x and y: Rq ~ w^(3-D).
-
-    Source: Malinverno 1990, doi:10.1029/GL017i011p01953.
-    """
-    return through_parts(ready, c, in_windows(1, False), size_band(ready, limits, 10, 1 / 4), "the roughness length")
-
-
-def by_higuchi(ready: Prepared, limits: Limits, c: float) -> Estimate:
-    """Length of the profiles along x and y measured with steps of k points: L ~ k^-Ds (Higuchi, doi:10.1016/
-    0167-2789(88)90081-4). G from the mean step, (2/pi)^(1/2) of its rms for Gaussian heights."""
-
-    def local(z: Array, known: Mask, steps: tuple[float, ...], low: float, high: float) -> tuple[float, float]:
-        found = []
-        marks = rows_of(known.astype(float), steps)
-        for (lines, step), (mark, _) in zip(rows_of(z, steps), marks, strict=True):
-            sizes = sizes_of(low, high, step)
-            x = np.log(np.array(sizes) * step)
-            y = []
-            for k in sizes:
-                both = mark[:, k:] * mark[:, :-k]
-                y.append(log(max(float(np.sum(np.abs(lines[:, k:] - lines[:, :-k]) * both) / both.sum()), 1e-300)))
-            # the length is N k^-2 sum |step|, so its slope -Ds is that of the mean step less 2
-            slope, intercept = np.polyfit(x, y, 1)
-            D = 3 - slope
-            level = 2 * intercept + log(pi / 2) - log(2 * structure_coefficient(inside(D)))
-            found.append((D, level - cut_log(inside(D), z.ndim == 2)))
-        return mean_law(found, low, high)
-
-    return through_parts(ready, c, local, size_band(ready, limits, 2, 1 / 16), "Higuchi's length")
-
-
 def by_mfdfa(ready: Prepared, limits: Limits, c: float) -> Estimate:
     """Fluctuation of the summed profiles about parabolas, of order q = 2: D = 4 - h(2).
 
     Source: Kantelhardt et al. 2002, doi:10.1016/S0378-4371(02)01383-3.
     """
-    return through_parts(
-        ready, c, in_windows(2, True), size_band(ready, limits, 10, 1 / 4), "the detrended fluctuation"
-    )
+    return through_parts(ready, c, in_windows(2), size_band(ready, limits, 10, 1 / 4), "the detrended fluctuation")
 
 
 def by_moments(ready: Prepared, limits: Limits, c: float) -> Estimate:
@@ -232,15 +198,12 @@ def by_network(ready: Prepared, limits: Limits, c: float) -> Estimate:
 
 
 WINDOWS, BAND = "windows from 10 spacings to a quarter of the side", "a band of a factor 5 in wavelength"
-STEPS = "Gaussian heights (for G); steps from 2 spacings to a sixteenth of the side"
 TERMS = "a band that holds as many frequencies of a series as the network was trained for"
 ESTIMATORS: dict[str, Estimator] = {
     name: Estimator(name=name, needs=needs, bias=bias, estimate=estimate)
     for name, estimate, needs, bias in (
         ("psd", by_psd, BAND, "none seen"),
         ("structure", by_structure, "lags from 3 spacings to a sixteenth of the side", "up to +0.1 in D below 2.2"),
-        ("roughness-length", by_roughness_length, WINDOWS, "-0.05 to -0.1 in D above 2.4"),
-        ("higuchi", by_higuchi, STEPS, "+0.08 in D at 2.1, -0.06 at 2.7"),
         ("mfdfa", by_mfdfa, WINDOWS, "within 0.02 in D"),
         ("moments", by_moments, BAND, "none seen; its interval is twice as wide as that of psd"),
         ("fpenn", by_network, TERMS, "none seen"),
