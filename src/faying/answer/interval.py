@@ -201,7 +201,7 @@ def intervals(
     of_draws = [
         drawn if isinstance(drawn, NotConverged) else at for drawn, at in of_joints.medians if drawn is not None
     ]
-    of_about = f"{', '.join(pairs)} and their medians"
+    of_about = f"{', '.join(pairs)} and their medians" if pairs else "medians"
     lost = [*_incomplete({"draws of waves": of_draws, of_about: of_medians[:1], **pairs})]
     notes = [*lost, *of_parts, *draws.notes(case), *law_notes(case, known)]
     return band, _combined(case, known, states, mesh, parts, of_joints), notes

@@ -168,10 +168,10 @@ def _scales(
         x, y, z = layout.units
         return x, y, z
     if layout.matrix and (lateral or layout.across is None):
-        if not lateral or z_unit is None:
+        if not lateral or z_unit is None or xy_unit is not None:
             raise InputError(
                 f"{file}: a matrix of heights: {unread or 'it states no size and no unit'}; {ASK_SIZE},"
-                f' and z_unit, for example "um" (--z-unit um)'
+                f' and z_unit, for example "um" (--z-unit um), and no xy_unit: the size has its own'
             )
         return 1.0, 1.0, scale(z_unit, "m", name="z_unit")
     if xy_unit is None or z_unit is None:
