@@ -211,10 +211,8 @@ def scan():
 
 
 def overview(of):
-    """The figure of `faying surface`, with three of its estimators."""
-    return surface.overview_figure(
-        of, prepared(of), {name: fit_fractal(of, name) for name in ("psd", "structure", "mfdfa")}
-    )
+    """The figure of `faying surface`, with two of its estimators."""
+    return surface.overview_figure(of, prepared(of), {name: fit_fractal(of, name) for name in ("psd", "structure")})
 
 
 def whole(drawn):
