@@ -148,6 +148,7 @@ def of_parts(folder, lines, test=""):
         ('E = "220 GPa +- 2 GPa"', ""),
         ('density = "7000 kg/m^3 +- 50 kg/m^3"', ""),
         ('part.block_a.stiffness = "1.1 +- 0.02"', ""),
+        ('part.block_b.stiffness = "1.1 +- 0.02"', ""),
         ('part.block_a.mass = "0.9 +- 0.02"\nE = "205 GPa +- 2 GPa"', ""),
         ('bolt.preload = "1 kN +- 0.05 kN"', ""),
         ('joint.tangential = "0.6 +- 0.01"\nE = "220 GPa +- 2 GPa"', 'mass = "0.2808 kg"'),

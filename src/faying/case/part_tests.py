@@ -186,11 +186,12 @@ class KnownParts:
         modes: elastic modes under each load, their frequencies [Hz] (m,) and mass-normalised shapes (n, m).
         """
         tests = study.part_tests
-        names = [*tests, *(name for name in structure.mesh.parts if name not in tests)]
-        means, roots = _listed(study, names)
-        names = [name for k, name in enumerate(names) if name in tests or means[k].any() or roots[k].any()]
+        listed = {number_of(key).owner for key in stated(study.uncertain) if of_parts(key)}
+        more = (name for name in structure.mesh.parts if listed & {name, study.parts[name]})
+        names = list(dict.fromkeys([*tests, *more]))
         if not names:
             return None
+        means, roots = _listed(study, names)
         parts = [
             PartAlone(name=name, structure=structure.alone(name), test=tests.get(name, PartTestChoice()).read())
             for name in names
@@ -199,8 +200,7 @@ class KnownParts:
         strain, kinetic, others = (np.stack(one) for one in zip(*energies, strict=True))
         by_factor = np.stack([strain, -kinetic], axis=-1).swapaxes(0, 1) / 2
         own, factors = min(mode_sd(study.uncertain), PART_SD), list[PartFactors]()
-        for part, mean, root in zip(parts[: len(tests)], means, roots, strict=False):
-            sd = np.linalg.norm(root, axis=1)
+        for part, mean, sd in zip(parts[: len(tests)], means, np.linalg.norm(roots, axis=2), strict=False):
             prior = float(np.hypot(2 * structure_sd(study.uncertain), sd[0])), float(sd[1]) or DENSITY_SD
             factors.append(part.factors(mean, prior, own))
         rest = slice(len(tests), len(parts))
