@@ -105,5 +105,5 @@ RESPONSE: Declared = {
         for side, what in (("input", "force"), ("output", "motion"))
     },
     "points": Key.count("Number of frequencies.", 1000, most=MOST_POINTS),
-    "structural_loss": Key.within(0, MOST_LOSS, "Loss factor of the parts themselves.", 0.0),
+    "structural_loss": Key.within(0, MOST_LOSS, "Loss factor of the parts, also at rest in vibration.", 0.0),
 }
