@@ -154,5 +154,5 @@ def too_far(what: str, point: tuple[float, float, float], distance: float, low: 
     at, first, last = (", ".join(f"{1e3 * x:.4g}" for x in corner) for corner in (point, low, high))
     return (
         f"{what}: the nearest node to ({at}) mm is {1e3 * distance:.3g} mm away; the structure is between ({first}) "
-        f"and ({last}) mm; check the point and its unit"
+        f"and ({last}) mm; check the point and its unit, or mesh finer"
     )

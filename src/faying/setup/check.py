@@ -186,8 +186,6 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
         fitted_bolts=(),
     )
     _contacts(sketch, found)
-    for key, what, point in named_points(study):
-        found.tried("point", key, partial(on_structure, what, point, ready or facts))
     shared = set() if ready is None else {face for face in ready.faces if ready.is_shared(face)}
     for joint in study.joints:
         if text := nothing_moves(joint.name, [face for face in joint.faces if face in shared]):
@@ -200,6 +198,8 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     for level, code, words, key in law_findings(sketch, surfaces):
         found.add(level, code, words, key)
     made = _meshed(study, facts, named, found) if mesh and ready is None else ready
+    for key, what, point in named_points(study):
+        found.tried("point", key, partial(on_structure, what, point, made or facts))
     if made is not None:
         _laid(study, made, surfaces, found)
     expected = _expected(study, facts, named, made, found)
