@@ -67,7 +67,7 @@ CALLS = {
     ),
     "synthesize.with_noise": (synthesize.with_noise, {"scan": SCAN, "rms": 1e-9, "seed": 1}),
     "synthesize.with_missing": (synthesize.with_missing, {"scan": SCAN, "share": 0.1, "seed": 1}),
-    "read_scan": (faying.read_scan, {"path": "SCAN.csv", "xy_unit": "mm", "z_unit": "um", "spacing": 1e-6}),
+    "read_scan": (faying.read_scan, {"path": "SCAN.csv", "z_unit": "um", "spacing": 1e-6}),
     "write_scan": (faying.write_scan, {"scan": SCAN, "path": "OUT.x3p", "precision": "D"}),
     "Material": (
         faying.Material,
