@@ -213,7 +213,7 @@ def shares_of(structure, preload):
     parts = [SimpleNamespace(name=name, structure=structure.alone(name)) for name in structure.mesh.parts]
     elastic = slice(structure.rigid_count, structure.rigid_count + len(state.vibration.damped.frequencies))
     modes = state.vibration.modes
-    return structure, parts, len(parts), modes.frequencies[elastic], modes.shapes[:, elastic]
+    return structure, parts, modes.frequencies[elastic], modes.shapes[:, elastic]
 
 
 def narrowed(case, states, interval, tests, ends=(None, None)):

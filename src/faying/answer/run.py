@@ -155,7 +155,7 @@ def collect(
     first = states[0].modes.frequencies[case.rigid_count]
     every = [*case.notes, *(note for s in states for note in s.notes), *notes, *more]
     every += encounters(states, steps)
-    every += level_notes(case, [state.levels for state in states], lossless)
+    every += level_notes(case, [state.levels for state in states])
     every += [*(note for b in alternatives for note in b.notes), *_closing_notes(study, rigid, first)]
     way = structure.solver(study.modes.solver)
     result = Result(

@@ -90,11 +90,18 @@ def rest_damping(structure: BoltedStructure, found: Vibration, parts_loss: float
     The prior is of all that damps a structure: where the loss factor of the parts [-] makes more, that is taken.
     """
     speeds = 2 * np.pi * found.damped.frequencies
-    own = found.modes.shapes[:, structure.rigid_count :][:, : len(speeds)]
-    of_parts = parts_loss / 2 * np.einsum("im,im->m", own, structure.matrices[0] @ own) / speeds**2
+    of_parts = np.zeros(len(speeds))
+    if parts_loss:
+        own = found.modes.shapes[:, structure.rigid_count :][:, : len(speeds)]
+        of_parts = parts_loss / 2 * np.einsum("im,im->m", own, structure.matrices[0] @ own) / speeds**2
     if structure.predicts_loss:
         return np.tile(found.damped.loss_factors / 2 + of_parts, (3, 1))
     return np.asarray(np.maximum(np.array(REST)[:, None], of_parts))
+
+
+def assumes_rest(structure: BoltedStructure, parts_loss: float) -> bool:
+    """Whether damping at rest has its prior, or some of it: see `rest_damping`."""
+    return not structure.predicts_loss and parts_loss / 2 < REST[2]
 
 
 def moved_by_loss(structure: BoltedStructure, found: Vibration) -> Array:
@@ -126,18 +133,18 @@ def _why_none(case: Case) -> str:
     )
 
 
-def level_notes(case: Case, found: Sequence[Levels | None], lossless: bool) -> list[Note]:
+def level_notes(case: Case, found: Sequence[Levels | None]) -> list[Note]:
     """What is assumed of friction and of rest."""
     if not found or not case.study.modes.levels or not case.structure.joints:
         return []
     if any(one is None for one in found):
         return [Note(code="no-level-damping", text=_why_none(case))]
     notes = _unanswered(case, [one for one in found if one is not None])
-    lossless = lossless and case.study.parts_loss / 2 < REST[2]
-    words = assumed_words(friction=assumes_friction(case.structure), rest=lossless)
+    rest = assumes_rest(case.structure, case.study.parts_loss)
+    words = assumed_words(friction=assumes_friction(case.structure), rest=rest)
     if not words:
         return notes
-    assumed = " and ".join(words) + ", as bolted structures have it" * lossless
+    assumed = " and ".join(words) + ", as bolted structures have it" * rest
     text = f"damping at levels of acceleration assumes {assumed}; a ring-down of the structure narrows it most"
     return [*notes, Note(code="level-damping", text=text)]
 

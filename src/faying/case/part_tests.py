@@ -119,8 +119,7 @@ class PartAlone:
     def factors(self, mean: Array, prior: tuple[float, float], mode: float) -> PartFactors:
         """What the test says.
 
-        mean, prior: of ln s_E and ln s_m before the test, and their standard deviations; mode: that of ln f of each
-        mode by itself.
+        mean, prior: of ln s_E and ln s_m before, and standard deviations; mode: that of ln f of each mode by itself.
         """
         measured = self.measured
         weighed = None if self.test.mass is None else float(np.log(self.test.mass / self.structure.mass))
@@ -164,7 +163,7 @@ class KnownParts:
         study: Which has their tests.
         parts, factors: those with a test (p), and what their tests say.
         moved, spread: what those without move ln f by as they are listed, and its standard deviation (loads, m) [-].
-        strain, kinetic: share of the energy of each mode in each part with a test (p, loads, m) [-].
+        by_factor: d ln f by ln s_E and ln s_m of each part with a test (p, loads, m, 2) [-].
         others: share of the strain energy in parts without a test (loads, m) [-]; 1 where none has one.
         all_rung: whether every part has measured modes.
     """
@@ -174,8 +173,7 @@ class KnownParts:
     factors: tuple[PartFactors, ...]
     moved: Array
     spread: Array
-    strain: Array
-    kinetic: Array
+    by_factor: Array
     others: Array
     all_rung: bool
 
@@ -196,7 +194,7 @@ class KnownParts:
             PartAlone(name=name, structure=structure.alone(name), test=tests.get(name, PartTestChoice()).read())
             for name in names
         ]
-        energies = [energy_shares(structure, parts, len(tests), *of_load) for of_load in modes]
+        energies = [energy_shares(structure, parts, *of_load) for of_load in modes]
         strain, kinetic, others = (np.stack(one) for one in zip(*energies, strict=True))
         by_factor = np.stack([strain, -kinetic], axis=-1).swapaxes(0, 1) / 2
         own, factors = min(mode_sd(study.uncertain), PART_SD), list[PartFactors]()
@@ -210,9 +208,8 @@ class KnownParts:
             factors=tuple(factors),
             moved=np.einsum("plmi,pi->lm", by_factor[rest], means[rest]),
             spread=np.linalg.norm(np.einsum("plmi,pik->lmk", by_factor[rest], roots[rest]), axis=-1),
-            strain=strain.swapaxes(0, 1)[: len(tests)],
-            kinetic=kinetic.swapaxes(0, 1)[: len(tests)],
-            others=others if tests else np.ones_like(others),
+            by_factor=by_factor[: len(tests)],
+            others=others + strain[:, rest].sum(axis=1) if tests else np.ones_like(others),
             all_rung=sum(len(part.measured) > 0 for part in parts) == len(structure.mesh.parts),
         )
 
@@ -223,12 +220,11 @@ class KnownParts:
         rung, "parts" stands for "structure".
         """
         structure, mode = offsets["structure"], offsets["mode"]
-        by_factor = np.stack([self.strain, -self.kinetic], axis=-1) / 2
-        pairs = list(zip(by_factor, self.factors, strict=True))
+        strain, pairs = 2 * self.by_factor[..., 0], list(zip(self.by_factor, self.factors, strict=True))
         middle = self.moved + sum(by @ one.mean for by, one in pairs)
         variance = self.spread**2 + sum(np.einsum("lmi,ij,lmj->lm", by, one.covariance, by) for by, one in pairs)
-        own = sum((share * one.scatter) ** 2 for share, one in zip(self.strain, self.factors, strict=True))
-        rest = np.clip(1 - self.strain.sum(axis=0), 0.0, 1.0)
+        own = sum((share * one.scatter) ** 2 for share, one in zip(strain, self.factors, strict=True))
+        rest = np.clip(1 - strain.sum(axis=0), 0.0, 1.0)
         found = {name: one for name, one in offsets.items() if name != "structure"}
         found["parts" if self.all_rung else "structure"] = _added(structure * self.others, variance)
         found["mode"] = _added(mode * rest, own)
@@ -288,12 +284,11 @@ def _listed(study: Study, names: Sequence[str]) -> tuple[Array, Array]:
 
 
 def energy_shares(
-    structure: Structure, parts: Sequence[PartAlone], counted: int, frequencies: Array, shapes: Array
+    structure: Structure, parts: Sequence[PartAlone], frequencies: Array, shapes: Array
 ) -> tuple[Array, Array, Array]:
     """Shares [-] of some parts in the strain and the kinetic energy of modes (p, m); of other parts in strain (m,).
 
-    counted: how many of the parts are none of the others; frequencies, shapes: of elastic modes, [Hz] (m,) and
-    mass-normalised (n, m).
+    frequencies, shapes: of elastic modes, [Hz] (m,) and mass-normalised (n, m).
     """
     squares, strain, kinetic = (2 * np.pi * frequencies) ** 2, [], []
     for part in parts:
@@ -301,4 +296,4 @@ def energy_shares(
         strain.append(np.einsum("im,im->m", own, K @ own) / squares)
         kinetic.append(np.einsum("im,im->m", own, M @ own))
     every = np.einsum("im,im->m", shapes, structure.matrices[0] @ shapes) / squares
-    return np.stack(strain), np.stack(kinetic), np.clip(every - np.sum(strain[:counted], axis=0), 0.0, 1.0)
+    return np.stack(strain), np.stack(kinetic), np.clip(every - np.sum(strain, axis=0), 0.0, 1.0)

@@ -22,7 +22,6 @@ from faying.study.study import Study
 from faying.typing import Array
 
 LEVELS = np.array([0.05, 0.5, 0.95])
-ENDS = LEVELS[[0, 2]]
 TWO_SIGMA = 0.02275  # probability below two standard deviations
 Known = Mapping[str, Distribution]  # what scatters, by its key
 SCORE = 1.6449  # standard deviations from the median to these ends

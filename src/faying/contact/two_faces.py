@@ -230,16 +230,14 @@ def _on_its_like(scan: Scan) -> Scan:
     """
     from scipy.fft import irfft2, rfft2
 
-    z, mirrored = scan.heights, scan.heights[:, ::-1]
-    rows, columns = scan.shape
-    one, other = (rfft2(face - face.mean()) for face in (z, mirrored))
-    alike = np.abs(irfft2(one * other.conj(), scan.shape)) / (float(z.var()) * z.size or 1.0)
-    along, across = np.arange(rows)[:, None] - rows // 2, np.arange(columns)
-    far = along**2 + np.minimum(across, columns - across) ** 2
-    fits = alike <= max(UNRELATED, float(alike.min()))
-    best = np.argmin(np.where(fits, far, far.max() + 1)) if alike[rows // 2, 0] > RELATED else rows // 2 * columns
-    shift = np.unravel_index(best, scan.shape)
-    words = f"laid on its mirror image, shifted by {shift[0] / rows:.3g} of the side"
+    z, mirrored, shift = scan.heights, scan.heights[:, ::-1], (scan.shape[0] // 2, 0)
+    one, other, square = z - z.mean(), mirrored - z.mean(), float(z.var()) * z.size or 1.0
+    if abs(np.vdot(one, np.roll(other, shift, axis=(0, 1)))) > RELATED * square:
+        alike = np.abs(irfft2(rfft2(one) * rfft2(other).conj(), z.shape)) / square
+        rows, columns = np.nonzero(alike <= max(UNRELATED, float(alike.min())))
+        nearest = np.argmin((rows - shift[0]) ** 2 + np.minimum(columns, z.shape[1] - columns) ** 2)
+        shift = int(rows[nearest]), int(columns[nearest])
+    words = f"laid on its mirror image, shifted by {shift[0] / scan.shape[0]:.3g} of the side"
     return scan.with_heights(z + np.roll(mirrored, shift, axis=(0, 1)), words)
 
 

@@ -1,7 +1,7 @@
 """One joint of a study as a 6 x 6 stiffness and loss between two points, with its error over frequency."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -24,7 +24,7 @@ from faying.misuse import checked_call
 from faying.numerics.constraint import constrain
 from faying.numerics.follow import partners
 from faying.numerics.held import Held
-from faying.numerics.modes import Modes, lowest_modes
+from faying.numerics.modes import lowest_modes
 from faying.numerics.solve import factorise
 from faying.progress import Report
 from faying.result.fields import listed
@@ -150,34 +150,24 @@ def condensed_modes(
     Raises:
         NotConverged: the modes are not found.
     """
+    from scipy.sparse import block_diag
+
     joint = CondensedJoint.of(springs[number])
     K, M = structure.dynamic_matrices
     others = [s.stiffness() for k, s in enumerate(springs) if k != number]
     K = sum((constrain(other, structure.fixed, 0.0) for other in others), K)
-    modes, motion = _mean(structure, K, M, joint, count, solver)
-    # to first order, of mass-normalised modes
-    lost, squared = np.einsum("im,ij,jm->m", motion, joint.loss, motion), (2 * np.pi * modes.frequencies) ** 2
-    factors = np.divide(lost, squared, out=np.zeros_like(lost), where=squared > 0)
-    return CondensedModes(frequencies=modes.frequencies, loss_factors=factors, shapes=modes.shapes)
-
-
-def _mean(
-    structure: Structure, K: Any, M: Any, joint: CondensedJoint, count: int, solver: str | None
-) -> tuple[Modes, Array]:
-    """Lowest modes with the points on the mean motions of the faces, and the relative motions of these (6, m).
-
-    Those are six unknowns more, without mass, whose sums with the motions of the faces are held.
-    """
-    from scipy.sparse import block_diag
-
+    # six unknowns more, without mass: the relative motions, whose sums with those of the faces are held
     spread = joint.mean.copy()
     spread[structure.fixed] = 0.0
     K, M = block_diag([K, joint.stiffness]).tocsr(), block_diag([M, np.zeros((6, 6))]).tocsr()
-    shift = (2 * np.pi * structure.shift_frequency) ** 2
     rows = np.concatenate([spread.T, -joint.stiffness], axis=1)
-    held = Held(factor=factorise((K + shift * M).tocsr(), solver), rows=rows)
+    held = Held(factor=factorise((K + (2 * np.pi * structure.shift_frequency) ** 2 * M).tocsr(), solver), rows=rows)
     modes = lowest_modes(K, M, count, shift_frequency=structure.shift_frequency, factor=held)
-    return replace(modes, shapes=modes.shapes[:-6]), modes.shapes[-6:]
+    shapes, motion = modes.shapes[:-6], modes.shapes[-6:]
+    # to first order, of mass-normalised modes
+    lost, squared = np.einsum("im,ij,jm->m", motion, joint.loss, motion), (2 * np.pi * modes.frequencies) ** 2
+    factors = np.divide(lost, squared, out=np.zeros_like(lost), where=squared > 0)
+    return CondensedModes(frequencies=modes.frequencies, loss_factors=factors, shapes=shapes)
 
 
 LIKE = 0.5  # MAC by mass from which two modes are one

@@ -33,7 +33,7 @@ class SuperelementUnit(Fmi2Slave):  # type: ignore[misc]  # the package has no t
             self.description = str(held["title"])
         self.force = np.zeros(len(names))
         self.x, self.v = np.zeros((2, len(self.omega)))
-        outputs = {"displacement": self._displacement, "velocity": self._velocity, "acceleration": self._acceleration}
+        outputs = {"displacement": lambda: self.x, "velocity": lambda: self.v, "acceleration": self._acceleration}
         for k, (name, word) in enumerate(zip(names, words, strict=True)):
             place, direction = name.rsplit(".", 1)
             for what, units in UNITS.items():
@@ -58,12 +58,6 @@ class SuperelementUnit(Fmi2Slave):  # type: ignore[misc]  # the package has no t
         first.tag = "InitialUnknowns"
         structure.append(first)
         return root
-
-    def _displacement(self) -> Any:
-        return self.x
-
-    def _velocity(self) -> Any:
-        return self.v
 
     def _acceleration(self) -> Any:
         return self.force @ self.shapes - 2 * self.ratio * self.omega * self.v - self.omega**2 * self.x

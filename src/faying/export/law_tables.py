@@ -96,11 +96,8 @@ def _table(law: ContactLaw, system: UnitSystem, friction: float | None, pressure
     last = min(LAST, law.greatest_pressure * (1 - 1e-12))
     p = np.geomspace(max(joint.least_pressure, min(FIRST, 1e-3 * last)), last, POINTS)
     k_n, _ = joint.stiffness(p, tabulated=True)
-    at = (
-        float(p[len(p) // 2])
-        if pressure is None
-        else number(pressure, "pressure", "Pa", least=p[0], greatest=p[-1], ends="[]")
-    )
+    wanted = float(p[len(p) // 2]) if pressure is None else pressure
+    at = number(wanted, "pressure", "Pa", least=p[0], greatest=p[-1], ends="[]")
     pair = getattr(law, "pair", None)
     conductance = None
     if isinstance(pair, ContactPair):

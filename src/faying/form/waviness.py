@@ -218,6 +218,11 @@ class Waves:
         return np.asarray(depth - depth.min())
 
 
+def carried_by(axes: FaceAxes) -> float:
+    """The shortest wave [m] that the mesh of faces carries."""
+    return NODES * axes.spacing
+
+
 @final
 @dataclass(frozen=True, kw_only=True)
 class LaidWaves:
@@ -229,7 +234,7 @@ class LaidWaves:
     @classmethod
     def of(cls, waviness: Waviness, axes: FaceAxes) -> Self:
         """Lay waves on a face. Raises InputError where it has no room for them."""
-        return cls(waves=waviness.on(axes), carried=NODES * axes.spacing)
+        return cls(waves=waviness.on(axes), carried=carried_by(axes))
 
     @property
     def missing_share(self) -> float:

@@ -168,9 +168,8 @@ class BoltedStructure(Summary):
         """What strains the parts under a preload [m] (unknowns,): its motion, and how far meshed bolts are drawn in."""
         u = preload.displacement
         pairs = zip(self.fitted_bolts, preload.bolt_forces, strict=True)
-        return np.asarray(
-            u + sum(bolt.drawn_in(u, force) for bolt, force in pairs if isinstance(bolt, FittedSolidBolt))
-        )
+        drawn = [bolt.drawn_in(u, force) for bolt, force in pairs if isinstance(bolt, FittedSolidBolt)]
+        return np.asarray(u + sum(drawn))
 
     @property
     def predicts_loss(self) -> bool:

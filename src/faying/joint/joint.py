@@ -14,7 +14,7 @@ from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.form.face_axes import FaceAxes
 from faying.form.form import Form
-from faying.form.waviness import NODES, LaidWaves
+from faying.form.waviness import NODES, LaidWaves, carried_by
 from faying.joint.joint_law import JointLaw
 from faying.joint.springs import Springs
 from faying.materials import MOST_FRICTION
@@ -249,19 +249,22 @@ def with_form(
     Raises InputError where the waves do not fit.
     """
     notes, waviness = list[Note](), form.waviness
-    least = NODES * FaceAxes.of(mesh, faces, interface, form.along).spacing if form.wave or waviness else 0.0
-    if form.wave and form.wave_length and form.wave_length < least:
+    if not (form.wave or waviness):
+        return form.on(interface, mesh, faces), notes
+    axes = FaceAxes.of(mesh, faces, interface, form.along)
+    if form.wave and form.wave_length and form.wave_length < (least := carried_by(axes)):
         text = (
             f"{name}: the points of the joint do not follow a wave of {show(form.wave_length, 'm')}; the mesh carries "
             f"{show(least, 'm')} ({NODES} nodes of the coarser face in a wave). Take finer elements on the faces"
         )
         notes.append(Note(code="waves-mesh", joint=name, text=text))
-    if waviness is None:
-        return form.on(interface, mesh, faces), notes
-    laid = LaidWaves.of(waviness, FaceAxes.of(mesh, faces, interface, form.along))
-    text = f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw gives other frequencies. "
-    text += f"faying sweep over joint.{name}.form.waviness_seed, or faying predict, says how far draws differ"
-    notes.append(Note(code="waves", joint=name, text=text))
-    if laid.missing_share > 0:
-        notes.append(Note(code="waves-mesh", joint=name, text=f"{name}: {laid.mesh_limit()}"))
+    if waviness is not None:
+        laid = LaidWaves.of(waviness, axes)
+        text = (
+            f"{name}: {laid.words()} ({waviness.origin}), draw {waviness.seed}; another draw gives other frequencies."
+        )
+        text += f" faying sweep over joint.{name}.form.waviness_seed, or faying predict, says how far draws differ"
+        notes.append(Note(code="waves", joint=name, text=text))
+        if laid.missing_share > 0:
+            notes.append(Note(code="waves-mesh", joint=name, text=f"{name}: {laid.mesh_limit()}"))
     return form.on(interface, mesh, faces), notes

@@ -62,13 +62,17 @@ class UniversalFile(Summary):
         }
         return f"Universal file {Path(self.source).name}" + (f": {self.title}" if self.title else ""), rows
 
+    @property
+    def _frfs(self) -> list[Function]:
+        return [f for f in self.functions if f.kind == "FRF"]
+
     def frf(self, *, quantity: str | None = None) -> FRF:
         """All FRFs as one object in SI, with the coherence of the same pairs.
 
         quantity: what was measured, where the file does not say it. Raises ReadError where there is no FRF, the
         quantities or the spectral lines differ, or the directions of a point are turned against the axes.
         """
-        found = [f for f in self.functions if f.kind == "FRF"]
+        found = self._frfs
         if not found:
             kinds = (
                 ", ".join(sorted({f.kind for f in self.functions})) or f"data sets {', '.join(map(str, self.kinds))}"
@@ -126,16 +130,16 @@ class UniversalFile(Summary):
     @property
     def pairs(self) -> tuple[tuple[Dof, Dof], ...]:
         """Output and input of each FRF, as the file has them one after the other."""
-        found = [f for f in self.functions if f.kind == "FRF"]
+        nameless = self._nameless
         return tuple(
-            (Dof(n, f.output.direction) if self._nameless else self._straight(f.output), self._straight(f.input))
-            for n, f in enumerate(found, start=1)
+            (Dof(n, f.output.direction) if nameless else self._straight(f.output), self._straight(f.input))
+            for n, f in enumerate(self._frfs, start=1)
         )
 
     @property
     def _nameless(self) -> bool:
         """Whether the FRFs are numbered, since they name no points."""
-        found = [f for f in self.functions if f.kind == "FRF"]
+        found = self._frfs
         return len({(f.output, f.input) for f in found}) < len(found) and all(f.output.point == 0 for f in found)
 
     def _coherence(self, outputs: tuple[Dof, ...], inputs: tuple[Dof, ...], shape: tuple[int, ...]) -> Array | None:

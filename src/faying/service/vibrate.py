@@ -9,7 +9,7 @@ import numpy as np
 
 from faying.bolt.bolt import fatigue_area
 from faying.bolt.fatigue import FatigueCurve, bending_modulus, dirlik, sweep_cycles
-from faying.case.level_damping import FRICTION, assumed_words
+from faying.case.level_damping import FRICTION, assumed_words, assumes_rest
 from faying.case.service_bolts import ServiceBolt, head_frictions
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
@@ -425,7 +425,8 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
     if np.any(found.get("jumps", np.zeros(1)) > 0):
         text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
         yield Note(code="vibration-jumps", text=text)
-    if words := assumed_words(friction=sets.least is not None, rest=bool(np.ptp(sets.rest, axis=0).any())):
+    rest = assumes_rest(given.base.structure, given.base.parts_loss)
+    if words := assumed_words(friction=sets.least is not None, rest=rest):
         yield Note(code="level-damping", text=f"damping in service assumes {' and '.join(words)}")
     if given.base.structure.joints:
         text = (

@@ -166,7 +166,7 @@ def read_uncertain(
 
 def _twice(numbers: Sequence[Varied], known: Known) -> Iterator[str]:
     """Say what scatters by two lines: of all owners and of each of them, or a force and a factor on it."""
-    names = {"joint": [joint.name for joint in known.joints], "bolt": known.bolts}
+    names = owners((joint.name for joint in known.joints), known.bolts, known.parts)
     by_place = {(one.room, one.name, one.owner): one.key for one in numbers}
     for (room, name, owner), key in by_place.items():
         own = [by_place.get((room, name, each), "") for each in names.get(room, ())] if owner is None else []
