@@ -285,13 +285,14 @@ def test_twins_of_a_square_bar_slip_as_one_mode_along_what_shakes_it(kind):
     """Directions that are alike in the section, along sides, diagonals and between, have the same motion.
 
     A side and a diagonal differ: bent about the diagonal the joint opens and slides at one corner first. With the twins
-    as the solver left them, noise made 34 % more of one of two directions that are alike.
+    as the solver left them, noise made 34 % more of one of two directions that are alike. The levels that this noise
+    reaches settle to 1e-3; ten times as much opens the whole joint, where cycles state errors of half their damping.
     """
     state = bars(friction=0.3, held=True).structure.solve(preload=2e3, modes=2)
     assert state.frequencies[0] == pytest.approx(state.frequencies[1], rel=1e-6)
     rms, damping = [], []
     for direction in ((0, 1, 0), (0, 0, 1), (0, 1, 1), (0, 1, -1), (0, 3, -4), (0, 4, 3)):
-        given = noise(1000.0, direction=direction)
+        given = noise(100.0, direction=direction)
         if kind == "sine":
             given = faying.Excitation("sweep", sine=[(f, 20.0) for f in BAND], direction=direction, rate=1.0)
         (found,) = faying.vibration(state, [given])
@@ -301,4 +302,4 @@ def test_twins_of_a_square_bar_slip_as_one_mode_along_what_shakes_it(kind):
     least, most = np.array(damping).T
     assert least == pytest.approx(REST, rel=1e-6)
     assert most[::2] == pytest.approx(most[1::2], rel=1e-3)
-    assert most[0] > (50 if kind == "random" else 1.03) * REST
+    assert most[0] > (10 if kind == "random" else 1.03) * REST
