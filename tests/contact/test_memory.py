@@ -61,25 +61,29 @@ def test_the_second_loading_is_elastic_and_joins_the_first(law, pressed):
 
 @pytest.mark.slow
 def test_a_second_cycle_gives_back_what_it_takes(law, pressed):
-    """Work of the plane on the way down and on the way up, by quadrature of pressure over approach: equal to 1e-6."""
-    pressures = MOST * np.linspace(0.02, 1, 25)
-    down = [again(law, pressed, p, 2e9).plane for p in pressures]
-    up = [again(law, pressed, p, 2e9).plane for p in pressures[::-1]][::-1]
-    works = [float(-np.trapezoid(pressures, way)) for way in (down, up)]
-    assert works[0] == pytest.approx(works[1], rel=1e-6)
+    """Down and up again, what each contact flattens carried into the next: the work of the plane closes to 1e-6."""
+    pressures, heights, works = MOST * np.linspace(0.02, 1, 25), pressed.flattened, []
+    for way in (pressures[::-1], pressures):
+        planes = []
+        for p in way:
+            contact = solve_half_space(
+                heights, law.scan.spacing, E_star=PAIR.E_star, pressure=p, hardness=2e9, tol=1e-9
+            )
+            heights = contact.flattened
+            planes.append(contact.plane)
+        works.append(float(-np.trapezoid(way, planes)))
+    down, up = works
+    assert down == pytest.approx(-up, rel=1e-6)
+    assert abs(down + up) < 1e-6 * pressed.plastic_work / np.prod(law.scan.spacing) / heights.size
 
 
 @pytest.mark.slow
 def test_a_law_after_a_pressure_is_that_of_the_flattened_heights(law, pressed):
-    """The family, which stands on pressures a factor of two apart, against contacts solved for this one, to 10 %.
-
-    The last tenth is lost next to the greatest pressure, where the way back is steepest.
-    """
+    """The family, which stands on pressures a factor of two apart, against contacts solved for this one, to 5 %."""
     p = MOST * np.array([0.75, 0.5, 0.25, 0.1])
     found = law.at_pressure(p, after=MOST)
     direct = [again(law, pressed, one, None).normal_stiffness(loading=False) for one in p]
-    assert found.k_n == pytest.approx(np.array(direct), rel=0.10)
-    assert found.k_n[1:] == pytest.approx(np.array(direct)[1:], rel=0.05)
+    assert found.k_n == pytest.approx(np.array(direct), rel=0.05)
     assert found.k_load == pytest.approx(found.k_n)
     assert np.all(found.k_n > law.at_pressure(p).k_n)
 
@@ -92,18 +96,31 @@ def test_above_what_was_carried_it_is_first_loading(law):
     assert law.at_pressure("0 Pa", after=MOST).k_n == 0
 
 
-def test_ways_back_between_solved_ones_are_within_5_percent(law):
-    """From eight greatest pressures that are not solved for; a fifth, at pressures with few spots, may miss by more."""
+def ways_missed(law, steps):
+    """Relative errors of k_n on ways back from eight greatest pressures that are not solved for (8, steps)."""
     memory, elastic, missed = law.memory, replace(law, elastic=True), []
     for most in memory.pressure[-2::-1][:8] * np.sqrt(STEP):
         contact = law.contact_at(float(most))
-        for steps in (1, 2, 3):
-            p = float(most / STEP**steps)
-            back = elastic._solve(contact.flattened, law.scan.spacing, p).normal_stiffness(loading=False)
-            first = law.contact_at(p).normal_stiffness(loading=False)
-            missed.append(float(memory.ratio("k_n", np.array(p), np.array(most))) / (back / first) - 1)
-    assert np.median(np.abs(missed)) < 0.03
-    assert np.quantile(np.abs(missed), 0.8) < 0.06
+        for p in most / STEP ** np.array(steps):
+            back = elastic._solve(contact.flattened, law.scan.spacing, float(p)).normal_stiffness(loading=False)
+            first = law.contact_at(float(p)).normal_stiffness(loading=False)
+            missed.append(float(memory.ratio("k_n", p, most)) / (back / first) - 1)
+    return np.reshape(missed, (8, len(steps)))
+
+
+def test_ways_back_between_solved_ones_are_within_5_percent(law):
+    """A fifth, at pressures with few spots of this small map, may miss by more."""
+    missed = np.abs(ways_missed(law, (0.25, 1, 2, 3)))
+    assert np.median(missed) < 0.03
+    assert np.quantile(missed, 0.8) < 0.06
+
+
+@pytest.mark.slow
+def test_each_way_back_is_within_5_percent_where_there_are_spots(law):
+    """The error over each of eight ways, in the mean over two draws of faces with 256 longest waves."""
+    laws = [HalfSpace(scan=faces(n=256, side=4e-3, seed=seed), pair=PAIR, tol=1e-7) for seed in (1, 7)]
+    missed = np.abs([ways_missed(one, (0.25, 0.5, 0.75, 1, 1.5, 2, 3)) for one in laws])
+    assert missed.mean(axis=(0, 2)).max() < 0.05
 
 
 def test_an_elastic_contact_remembers_nothing():
@@ -214,14 +231,14 @@ def test_a_law_that_says_nothing_of_unloading_says_so(law):
 
 
 def test_the_table_of_a_known_ratio_is_read_exactly():
-    """ln ratio = 0.3 sqrt(log2(P/p)) is what the interpolation represents exactly."""
+    """ln ratio = 0.3 log2(P/p) is what the interpolation represents exactly."""
 
     def solve(pressure):
         back = np.log2(pressure[None, :] / pressure[:, None])
-        return {"k_n": np.where(back >= 0, np.exp(0.3 * np.sqrt(np.maximum(back, 0))), np.nan)}
+        return {"k_n": np.where(back >= 0, np.exp(0.3 * back), np.nan)}
 
-    memory = Memory.of(1e4, 1e8, solve, power=0.5)
+    memory = Memory.of(1e4, 1e8, solve)
     p, most = np.array([5e4, 5e5, 7e6]), np.array([4e7, 4.1e7, 9e6])
-    exact = np.exp(0.3 * np.sqrt(np.log2(most / p)))
-    assert memory.ratio("k_n", p, most) == pytest.approx(exact, rel=5e-3)
+    exact = (most / p) ** (0.3 / np.log(2))
+    assert memory.ratio("k_n", p, most) == pytest.approx(exact, rel=1e-12)
     assert memory.ratio("k_n", most, p) == pytest.approx(1.0)

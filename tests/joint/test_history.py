@@ -15,6 +15,7 @@ from faying.loads.contact import LoadedContact
 from faying.microslip.microslip import Microslip
 from tests.helpers.bars import bars, even
 from tests.helpers.boxes import row
+from tests.helpers.plates import plates, stacked
 
 STEEL = faying.Material(name="steel", E=206e9, nu=0.3, hardness=2e9, density=7850.0)
 LAW = GreenwoodWilliamson(
@@ -182,6 +183,42 @@ def test_a_state_that_was_loosened_can_be_solved_anew(states):
     """Its structure is put together fresh: first loading."""
     again = states[2].structure.solve("2 kN", modes=4)
     assert again.frequencies == pytest.approx(states[0].frequencies, rel=1e-8)
+
+
+@pytest.mark.parametrize("engine", ["reanalysis", "direct"])
+def test_bolts_in_turn_leave_what_each_point_carried(engine):
+    """Tightened, loosened and tightened one bolt after the other: each point goes by its own greatest pressure."""
+    structure = plates(
+        stacked(counts=(8, 4, 1), size=(0.08, 0.04, 0.03)),
+        bolts=tuple(
+            faying.Bolt(
+                name, ("high.top", "low.bottom"), at=(x, 0.02, 0.0), seat=(0.0, 24e-3), diameter=8e-3, material=STEEL
+            )
+            for name, x in (("one", 0.03), ("two", 0.05))
+        ),
+        law=LAW,
+    )
+    given = {"modes": 2, "order": ["two", "one"], "engine": engine}
+    up, top, back = structure.solve(["2 kN", "6 kN", "2 kN"], **given)
+    assert up.frequencies == pytest.approx(structure.solve("2 kN", **given).frequencies, rel=1e-8)
+    springs, most = back.springs[0], top.springs[0].pressure
+    assert springs.interface.weights @ springs.pressure == pytest.approx(sum(back.preload.bolt_forces), rel=1e-6)
+    used = (springs.pressure > 1e4) & (springs.pressure < most)
+    expected = LAW.at_pressure(springs.pressure[used], after=most[used])
+    assert springs.k_n[used] == pytest.approx(expected.k_n, rel=1e-4)
+    assert used.mean() > 0.5
+    assert np.all(back.frequencies > up.frequencies)
+
+
+def test_a_joint_that_was_loosened_shakes_with_the_stiffness_that_it_has(first):
+    """At rest the modes of its state; under noise that slides it no faster than these."""
+    structure = bars(law=first, held=True, friction=0.3).structure
+    up, _, back = structure.solve(["2 kN", "8 kN", "2 kN"], modes=3)
+    noise = faying.Excitation("noise", psd=[("200 Hz", "0.1 g^2/Hz"), ("30 kHz", "0.1 g^2/Hz")], direction=(0, 1, 0))
+    (fresh,), (used,) = (faying.vibration(state, [noise]) for state in (up, back))
+    assert used.rest_frequency == pytest.approx(back.frequencies, rel=1e-9)
+    assert used.rest_frequency[0] > 1.005 * fresh.rest_frequency[0]
+    assert np.all(used.frequency[1] <= used.rest_frequency * (1 + 1e-9))
 
 
 def test_which_preloads_count_before_another():

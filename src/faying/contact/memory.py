@@ -18,27 +18,24 @@ Ratios = Mapping[str, Array]
 class Memory:
     """Ratios of what a law says after a greatest pressure P to what it says on first loading, at pressures p up to P.
 
-    Between the entries of the table ln ratio is linear in ln p and in a power of ln(P/p).
+    Between the entries of the table ln ratio is linear in ln p and in ln(P/p).
 
     Args:
         pressure: [Pa] (n,), each `STEP` times the one before.
         log_ratio: ln of the ratio of each quantity by its name (n, d): at p = pressure[i] after P = pressure[i]
             `STEP`^j.
-        power: of ln(P/p).
     """
 
     pressure: Array
     log_ratio: Mapping[str, Array]
-    power: float = 1.0
 
     @classmethod
-    def of(cls, least: float, greatest: float, solve: Callable[[Array], Ratios], *, power: float = 1.0) -> Self:
+    def of(cls, least: float, greatest: float, solve: Callable[[Array], Ratios]) -> Self:
         """Make the table of a law.
 
         Args:
             least, greatest: pressures [Pa] that the law covers.
             solve: takes pressures (n,) and returns by name ratios (n, n), at the first index after the second.
-            power: of ln(P/p) in which ln ratio is taken for linear.
         """
         first, last = np.ceil(np.log2(least)), np.floor(np.log2(greatest))
         pressure = STEP ** np.arange(first, max(last, first + 1) + 1)
@@ -49,7 +46,7 @@ class Memory:
                 known = np.log(row[i : i + DEEPEST + 1])
                 logs[i] = np.pad(known, (0, DEEPEST + 1 - len(known)), "edge")
             out[name] = logs
-        return cls(pressure=pressure, log_ratio=out, power=power)
+        return cls(pressure=pressure, log_ratio=out)
 
     def ratio(self, name: str, pressure: Array, greatest: Array) -> Array:
         """Ratio of a quantity [-] at pressures [Pa] after greatest ones [Pa], shapes that broadcast; 1 above these.
@@ -65,8 +62,7 @@ class Memory:
         i = np.clip(x, 0, n - 1)
         j = np.clip(back, 0, DEEPEST)
         row, column = np.minimum(i.astype(int), n - 2), np.minimum(j.astype(int), DEEPEST - 1)
-        here, before, after = (x**self.power for x in (j, column, column + 1))
-        a, b = i - row, (here - before) / (after - before)
+        a, b = i - row, j - column
         low = (1 - b) * logs[row, column] + b * logs[row, column + 1]
         high = (1 - b) * logs[row + 1, column] + b * logs[row + 1, column + 1]
         return np.where(used, np.exp((1 - a) * low + a * high), 1.0)

@@ -31,7 +31,6 @@ COARSE = 0.5  # greatest share of the stiffness on spots of fewer than 4 points
 LAY = 0.02  # relative difference of k_t along and across the lay that is said
 STEP = 1.05  # factor of pressure either way over which the slope of one contact's loading curve is taken
 FINEST = 512  # points a side up to which unloading is solved: its ratios to first loading change by 5 % from 400 to 800
-SPRING_BACK = 0.5  # power of ln(P/p) with which ln k_n leaves first loading: the border of a spot at hardness is steep
 RESOLVED = 0.25  # greatest change of ln k_n on half the points each way
 
 
@@ -334,7 +333,7 @@ class HalfSpace(ContactLaw):
         """Unloading and loading again on the heights that a greatest pressure has flattened; None on loading."""
         if self.stiffness == "loading" and self._hardness is not None:
             return None
-        return Memory.of(*self.closure_range, self._ratios, power=SPRING_BACK)
+        return Memory.of(*self.closure_range, self._ratios)
 
     def _ratios(self, pressure: Array) -> Mapping[str, Array]:
         """Ratios (n, n) at pressures [Pa] after each of them; see `Memory.of`."""
