@@ -1,6 +1,6 @@
 """CPU seconds of the spectrum, the structure function and the command, beside SurfaceTopography in the same run.
 
-Run: OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 python benchmarks/surface_speed.py   (needs --group compare)
+Run: OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 python benchmarks/surface_speed.py   (needs --group peers)
 """
 
 import resource

@@ -9,7 +9,7 @@ points missing. Surfaces are cut from periodic Gaussian ones of twice the side. 
 computed again.
 
 SurfaceTopography (power spectrum of the area, Hann window, straight line in the logarithms over the same band) runs in
-this process; fracDimPy (GPL) in one of its own, at 256 points; both come with `--group compare`.
+this process; fracDimPy (GPL) in one of its own, at 256 points; both come with `--group peers`.
 """
 
 import argparse

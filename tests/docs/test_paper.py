@@ -57,3 +57,14 @@ def test_pandoc_makes_it(tmp_path):
     assert "not found" not in done.stderr  # a source
     html = out.read_text(encoding="utf-8")
     assert all(f"https://doi.org/{doi}" in html for doi in entries(PAPER.with_name("paper.bib")).values())
+
+
+@pytest.mark.skipif(
+    not (shutil.which("pandoc") and shutil.which("weasyprint")), reason="pandoc or weasyprint is missing"
+)
+def test_it_is_a_pdf(tmp_path):
+    out = tmp_path / "paper.pdf"
+    command = ["pandoc", "paper.md", "--citeproc", "--pdf-engine=weasyprint", "-o", str(out)]
+    subprocess.run(command, cwd=PAPER.parent, capture_output=True, check=True)
+    assert out.read_bytes()[:5] == b"%PDF-"
+    assert out.stat().st_size > sum(path.stat().st_size for path in PAPER.parent.glob("*.md"))  # with its figures

@@ -1,6 +1,8 @@
 """What somebody gets who installs the wheel: the commands work from an empty environment, away from the checkout."""
 
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -21,23 +23,36 @@ def called(*command, cwd):
     return done.stdout
 
 
-@pytest.mark.slow
-def test_the_wheel_in_an_empty_environment(tmp_path):
-    uv = shutil.which("uv")
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """The folder of programs of an empty environment with the wheel, which the sdist makes."""
+    folder, uv = tmp_path_factory.mktemp("wheel"), shutil.which("uv")
     if uv is None:
         pytest.skip("uv is not installed")
-    called(uv, "build", "--wheel", "--out-dir", tmp_path / "dist", ROOT, cwd=tmp_path)
-    (wheel,) = (tmp_path / "dist").glob("*.whl")
+    called(uv, "build", "--out-dir", folder / "dist", ROOT, cwd=folder)
+    (wheel,) = (folder / "dist").glob("*.whl")
+    assert list((folder / "dist").glob("*.tar.gz"))
     version = ".".join(map(str, sys.version_info[:2]))
-    called(uv, "venv", "--python", version, tmp_path / "venv", cwd=tmp_path)
-    bin_folder = tmp_path / "venv" / ("Scripts" if sys.platform == "win32" else "bin")
-    called(uv, "pip", "install", "--python", bin_folder / "python", wheel, cwd=tmp_path)
-    where = called(bin_folder / "python", "-c", "import faying; print(faying.__file__)", cwd=tmp_path)
-    assert where.startswith(str(tmp_path / "venv"))
-    called(bin_folder / "faying", "init", "study.toml", cwd=tmp_path)
-    said = called(bin_folder / "faying", "run", "study.toml", cwd=tmp_path)
-    assert "Two blocks and a bolt" in said
+    called(uv, "venv", "--seed", "--python", version, folder / "venv", cwd=folder)
+    bin_folder = folder / "venv" / ("Scripts" if sys.platform == "win32" else "bin")
+    called(bin_folder / "python", "-m", "pip", "install", "--quiet", f"{wheel}[pardiso]", cwd=folder)
+    where = called(bin_folder / "python", "-c", "import faying; print(faying.__file__)", cwd=folder)
+    assert where.startswith(str(folder / "venv"))
+    return bin_folder
+
+
+@pytest.mark.slow
+def test_what_the_readme_types_works_from_the_wheel(installed, tmp_path):
+    """Its commands word for word behind `uv run`, and its Python, beside a copy of the examples."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("results"))
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    typed = re.findall(r"^(?:pip install uv && )?uv run (?:--extra \w+ )*faying (.*)$", text, re.M)
+    assert len(typed) > 4
+    for words in typed:
+        called(installed / "faying", *shlex.split(words), cwd=tmp_path)
     assert {"result.nc", "report.html"} <= {path.name for path in (tmp_path / "results").iterdir()}
+    (script,) = re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
+    assert "k_n 17.6 MPa/um" in called(installed / "python", "-c", script, cwd=tmp_path)
 
 
 def test_one_version_and_one_licence_everywhere():
@@ -55,5 +70,6 @@ def test_the_container_installs_the_libraries_that_the_message_names():
 
     needed = LIBRARIES["Debian, Ubuntu"].removeprefix("apt-get install ").split()
     text = (ROOT / "Dockerfile").read_text()
-    assert len(text.splitlines()) <= 12
+    assert len(text.splitlines()) <= 14
+    assert 'pip install --no-cache-dir "$(ls /dist/*.whl)' in text
     assert all(name in text for name in needed)

@@ -13,7 +13,7 @@ from faying.surface.roughness import roughness
 
 NANOVEA = {"xy_unit": "mm", "z_unit": "um"}
 TOPOGRAPHY = importlib.util.find_spec("SurfaceTopography") is not None
-needs_library = pytest.mark.skipif(not TOPOGRAPHY, reason="SurfaceTopography is not installed (group compare)")
+needs_library = pytest.mark.skipif(not TOPOGRAPHY, reason="SurfaceTopography is not installed (group peers)")
 
 
 @pytest.mark.parametrize("name", ["test1.csv", "test2.csv", "test4.csv"])
