@@ -7,6 +7,7 @@ from faying.study.vibration import InputTable
 from faying.typing import Array, Complex
 
 GAUSS = 10  # nodes of a stretch: its end is as far from the nearest pole as it is long, or farther, which leaves 1e-12
+PLACES, WEIGHTS = np.polynomial.legendre.leggauss(GAUSS)
 
 
 def rule(table: InputTable, speeds: Array, dampings: Array) -> tuple[Array, Array]:
@@ -26,9 +27,8 @@ def rule(table: InputTable, speeds: Array, dampings: Array) -> tuple[Array, Arra
             away = zeta * f * np.concatenate([[0.0], 2.0 ** np.arange(np.ceil(most))])
             ends += [f - away, f + away]
     every = np.unique(np.clip(np.concatenate(ends), first, last))
-    places, weights = np.polynomial.legendre.leggauss(GAUSS)
     middle, half = (every[1:] + every[:-1]) / 2, np.diff(every) / 2
-    return (middle[:, None] + half[:, None] * places).ravel(), (half[:, None] * weights).ravel()
+    return (middle[:, None] + half[:, None] * PLACES).ravel(), (half[:, None] * WEIGHTS).ravel()
 
 
 def resonance(speed: Array | float, damping: Array | float, frequencies: Array) -> Complex:
