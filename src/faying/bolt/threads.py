@@ -2,10 +2,11 @@
 
 Dimensions of metric fasteners by their standards, in one table: threads, holes, heads, washers, pins.
 
-Sources: ISO 261:1998 (coarsest pitch), ISO 273:1979 (clearance holes: fine, medium, coarse), ISO 4014:2011 and
-4017:2014 (hexagon heads: width across flats), ISO 4762:2004 (cap screws: diameter of the head; M18 and M22 by DIN 912),
-ISO 7089:2000 and 7090:2000 (plain washers: inner and outer diameter, thickness), ISO 2338:1997 (parallel pins). A dash
-is where the standard has no such size.
+Sources: ISO 261:1998 and 262:1998 (coarsest pitch), ISO 273:1979 (clearance holes: fine, medium, coarse), ISO 4014:2011
+and 4017:2014 (hexagon heads: width across flats), ISO 4762:2004 (cap screws: diameter of the head; M18 and M22 by DIN
+912), ISO 7089:2000 and 7090:2000 (plain washers: inner and outer diameter, thickness), ISO 10642:2004 (countersunk
+heads: least diameter, and greatest of the sharp cone), ISO 2338:1997 (parallel pins). A dash is where the standard has
+no such size.
 """
 
 import re
@@ -18,46 +19,46 @@ import numpy as np
 from faying.errors import InputError
 from faying.units import show
 
-# all in mm: thread, pitch; holes; flats; socket head; washer
+# all in mm: thread, pitch; holes; flats; socket head; washer; countersunk head
 _TABLE = """
-1.6 0.35   1.7  1.8  2.0     3.2     3       1.7   4   0.3
-2   0.4    2.2  2.4  2.6     4       3.8     2.2   5   0.3
-2.5 0.45   2.7  2.9  3.1     5       4.5     2.7   6   0.5
-3   0.5    3.2  3.4  3.6     5.5     5.5     3.2   7   0.5
-3.5 0.6    3.7  3.9  4.2     6       -       3.7   8   0.5
-4   0.7    4.3  4.5  4.8     7       7       4.3   9   0.8
-5   0.8    5.3  5.5  5.8     8       8.5     5.3   10  1
-6   1      6.4  6.6  7       10      10      6.4   12  1.6
-7   1      7.4  7.6  8       11      -       -     -   -
-8   1.25   8.4  9    10      13      13      8.4   16  1.6
-10  1.5    10.5 11   12      16      16      10.5  20  2
-12  1.75   13   13.5 14.5    18      18      13    24  2.5
-14  2      15   15.5 16.5    21      21      15    28  2.5
-16  2      17   17.5 18.5    24      24      17    30  3
-18  2.5    19   20   21      27      27      19    34  3
-20  2.5    21   22   24      30      30      21    37  3
-22  2.5    23   24   26      34      33      23    39  3
-24  3      25   26   28      36      36      25    44  4
-27  3      28   30   32      41      -       28    50  4
-30  3.5    31   33   35      46      45      31    56  4
-33  3.5    34   36   38      50      -       34    60  5
-36  4      37   39   42      55      54      37    66  5
-39  4      40   42   45      60      -       42    72  6
-42  4.5    43   45   48      65      63      45    78  8
-45  4.5    46   48   52      70      -       48    85  8
-48  5      50   52   56      75      72      52    92  8
-52  5      54   56   62      80      -       56    98  8
-56  5.5    58   62   66      85      84      62    105 10
-60  5.5    62   66   70      90      -       66    110 10
-64  6      66   70   74      95      96      70    115 10
-68  6      70   74   78      -       -       -     -   -
-72  6      74   78   82      -       -       -     -   -
-76  6      78   82   86      -       -       -     -   -
-80  6      82   86   91      -       -       -     -   -
-85  6      87   91   96      -       -       -     -   -
-90  6      93   96   101     -       -       -     -   -
-95  6      98   101  107     -       -       -     -   -
-100 6      104  107  112     -       -       -     -   -
+1.6 0.35   1.7  1.8  2.0     3.2     3       1.7   4   0.3  -     -
+2   0.4    2.2  2.4  2.6     4       3.8     2.2   5   0.3  -     -
+2.5 0.45   2.7  2.9  3.1     5       4.5     2.7   6   0.5  -     -
+3   0.5    3.2  3.4  3.6     5.5     5.5     3.2   7   0.5  5.54  6.72
+3.5 0.6    3.7  3.9  4.2     6       -       3.7   8   0.5  -     -
+4   0.7    4.3  4.5  4.8     7       7       4.3   9   0.8  7.53  8.96
+5   0.8    5.3  5.5  5.8     8       8.5     5.3   10  1    9.43  11.2
+6   1      6.4  6.6  7       10      10      6.4   12  1.6  11.34 13.44
+7   1      7.4  7.6  8       11      -       -     -   -    -     -
+8   1.25   8.4  9    10      13      13      8.4   16  1.6  15.24 17.92
+10  1.5    10.5 11   12      16      16      10.5  20  2    19.22 22.4
+12  1.75   13   13.5 14.5    18      18      13    24  2.5  23.12 26.88
+14  2      15   15.5 16.5    21      21      15    28  2.5  26.52 30.8
+16  2      17   17.5 18.5    24      24      17    30  3    29.01 33.6
+18  2.5    19   20   21      27      27      19    34  3    -     -
+20  2.5    21   22   24      30      30      21    37  3    36.05 40.32
+22  2.5    23   24   26      34      33      23    39  3    -     -
+24  3      25   26   28      36      36      25    44  4    -     -
+27  3      28   30   32      41      -       28    50  4    -     -
+30  3.5    31   33   35      46      45      31    56  4    -     -
+33  3.5    34   36   38      50      -       34    60  5    -     -
+36  4      37   39   42      55      54      37    66  5    -     -
+39  4      40   42   45      60      -       42    72  6    -     -
+42  4.5    43   45   48      65      63      45    78  8    -     -
+45  4.5    46   48   52      70      -       48    85  8    -     -
+48  5      50   52   56      75      72      52    92  8    -     -
+52  5      54   56   62      80      -       56    98  8    -     -
+56  5.5    58   62   66      85      84      62    105 10   -     -
+60  5.5    62   66   70      90      -       66    110 10   -     -
+64  6      66   70   74      95      96      70    115 10   -     -
+68  6      70   74   78      -       -       -     -   -    -     -
+72  6      74   78   82      -       -       -     -   -    -     -
+76  6      78   82   86      -       -       -     -   -    -     -
+80  6      82   86   91      -       -       -     -   -    -     -
+85  6      87   91   96      -       -       -     -   -    -     -
+90  6      93   96   101     -       -       -     -   -    -     -
+95  6      98   101  107     -       -       -     -   -    -     -
+100 6      104  107  112     -       -       -     -   -    -     -
 """
 
 
@@ -71,13 +72,14 @@ class MetricSize:
     flats: float | None
     socket: float | None
     washer: tuple[float, float, float] | None
+    sunk: tuple[float, float] | None
 
 
 def _read(line: str) -> MetricSize:
     """A line of the table."""
     numbers = [None if word == "-" else float(word) for word in line.split()]
     size, pitch, fine, medium, coarse = (number or 0.0 for number in numbers[:5])  # which every line has
-    inner, outer, thickness = numbers[7:]
+    inner, outer, thickness, least, most = numbers[7:]
     return MetricSize(
         size=size,
         pitch=pitch,
@@ -85,6 +87,7 @@ def _read(line: str) -> MetricSize:
         flats=numbers[5],
         socket=numbers[6],
         washer=(inner, outer, thickness) if inner and outer and thickness else None,
+        sunk=(least, most) if least and most else None,
     )
 
 

@@ -285,6 +285,9 @@ def _remark(row: _Row, size: float, tapped: bool, engaged: float | None) -> str:
     for body, standard in ((stem, "ISO 4014"), *((nut, "ISO 4032") for nut in nuts)):
         if body.flats is not None and one.flats is not None and abs(1e3 * body.flats - one.flats) > NOMINAL:
             words.append(f"{1e3 * body.flats:g} mm across flats, where {standard} has {one.flats:g} mm")
+    across = round(2e3 * stem.reach, 6)
+    if _bearing(row, 0, alone=True) is None and stem.head and one.sunk and not one.sunk[0] <= across <= one.sunk[1]:
+        words.append(f"its head has {across:g} mm, where ISO 10642 has {one.sunk[0]:g} to {one.sunk[1]:g} mm")
     if not tapped and _bearing(row, 0) is not None and abs(_outer(row, 0, size) - _outer(row, 1, size)) > CLOSE:
         words.append("seat: the smaller of the two that are drawn")
     return "; ".join(words)
