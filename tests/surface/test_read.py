@@ -195,6 +195,18 @@ def test_damaged_x3p(rough, tmp_path):
         read_scan(cut)
 
 
+def test_an_increment_of_z_is_for_whole_numbers_alone(rough, tmp_path):
+    """The schema of openGPS: a multiplier of integers; heights in decimals are in metres."""
+    good = write_scan(rough, tmp_path / "good.x3p", precision="D")
+    xml = zipfile.ZipFile(good).read("main.xml").decode()
+    for step, notes in (("1", 0), ("1e-06", 1)):
+        stated = xml.replace("</DataType></CZ>", f"</DataType><Increment>{step}</Increment></CZ>")
+        assert stated != xml
+        back = read_scan(repacked(good, tmp_path / "stated.x3p", main_xml=stated))
+        np.testing.assert_array_equal(back.heights, rough.heights)
+        assert len(back.notes) == notes
+
+
 def test_x3p_with_a_mask_and_with_heights_in_the_xml(tmp_path):
     scan = spectral((8, 12), spacing=1e-6, D=2.4, Rq=1e-6)
     good = write_scan(scan, tmp_path / "good.x3p", precision="D")

@@ -114,21 +114,18 @@ def read(path: Path) -> Scan | Profile:
         heights, missing = _heights(archive, root, path)
         kind = _text(root, "Record1", "FeatureType") or "SUR"
         offset = _number(root, path, "Record1", "Axes", "CZ", "Offset", default=0.0)
-        if heights.dtype.kind == "i":
-            step = _number(root, path, "Record1", "Axes", "CZ", "Increment")
-        else:
-            step = _number(root, path, "Record1", "Axes", "CZ", "Increment", default=1.0) or 1.0
-        z = heights.astype(float) * step + offset
+        whole = _text(root, "Record1", "Axes", "CZ", "DataType") in ("I", "L")
+        step = _number(root, path, "Record1", "Axes", "CZ", "Increment", default=None if whole else 1.0)
+        z = heights.astype(float) * (step if whole else 1.0) + offset
         z[missing | ~np.isfinite(z)] = np.nan
+    notes = () if whole or step in (0, 1) else (f"{path}: heights in metres; the increment {step:g} is for integers",)
     makers = [_text(root, "Record2", "Instrument", part) for part in ("Manufacturer", "Model")]
     instrument = Instrument(name=" ".join(filter(None, makers)))
     spacing = [_spacing(root, path, axis) for axis in ("CX", "CY")[: 1 if kind == "PRF" else 2]]
     try:
         if kind == "PRF":
-            return Profile(heights=z.ravel(), spacing=spacing[0], source=str(path), instrument=instrument)
-        return Scan(heights=z, spacing=(spacing[0], spacing[1]), source=str(path), instrument=instrument)
-    except ReadError:
-        raise
+            return Profile(heights=z.ravel(), spacing=spacing[0], source=str(path), instrument=instrument, notes=notes)
+        return Scan(heights=z, spacing=(spacing[0], spacing[1]), source=str(path), instrument=instrument, notes=notes)
     except InputError as fault:
         raise ReadError(f"{path}: {fault}") from fault
 
