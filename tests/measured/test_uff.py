@@ -281,6 +281,8 @@ def test_positions_in_the_units_of_the_file(tmp_path):
     assert read_uff(path).modes().positions[1] == pytest.approx((1e-3, 2e-3, 3e-3))
     with pytest.raises(InputError, match="leave out length_unit"):
         read_uff(path, length_unit="mm")
+    path = raw(tmp_path / "far.uff", units(1.0), nodes(), shape())
+    assert "or correct data set 164" in read_uff(path).warnings[0]
     path = raw(tmp_path / "b.uff", nodes(), shape())
     assert read_uff(path, length_unit="mm").positions[2] == pytest.approx((0.1, 0.2, 0.3))
     notes = " ".join(read_uff(path).warnings)

@@ -146,9 +146,8 @@ def _about_lengths(file: Path, positions: Mapping[int, Position], *, stated: boo
     if not stated:
         notes.append(f"{file}: the file states no unit of length; metres are assumed (the points span {size:.3g} m)")
     if size > 100:
-        notes.append(
-            f'{file}: the points span {size:.3g} m; are they in mm? Then give length_unit="mm" (--length-unit mm)'
-        )
+        hint = 'give length_unit="mm" (--length-unit mm), or correct data set 164 where there is one'
+        notes.append(f"{file}: the points span {size:.3g} m; are they in mm? Then {hint}")
     return notes
 
 
