@@ -20,10 +20,13 @@ from zipfile import ZipFile
 from faying.errors import InputError, ReadError
 
 LATIN = "faying-latin"  # errors of a text that is read: what is not UTF-8 is Latin-1, as instruments write their µ
+UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # or begins with one of these, as the texts of Windows programs do
 
 
 def _latin(fault: UnicodeError) -> tuple[str, int]:
     assert isinstance(fault, UnicodeDecodeError)
+    if fault.object.startswith(UTF16):
+        return fault.object.decode("utf-16", "replace"), len(fault.object)
     return fault.object[fault.start : fault.end].decode("latin-1"), fault.end
 
 

@@ -19,7 +19,7 @@ def test_columns_and_lists_of_complex_numbers_agree(tmp_path):
     np.testing.assert_array_equal(a.values[0, 0], values)
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1", "utf-16"])
 def test_degrees_and_squares_are_read_in_the_encoding_of_the_instrument(tmp_path, encoding):
     file = tmp_path / "a.csv"
     file.write_bytes("frequency [Hz],magnitude [m/s²/N],phase [°]\n1,2,90\n2,3,180\n".encode(encoding))

@@ -18,13 +18,29 @@ def read(path, content, **given):
     return read_scan(path, **({"xy_unit": "um", "z_unit": "um"} | given))
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1", "utf-16"])
 def test_a_micro_sign_is_read_in_the_encoding_of_the_instrument(tmp_path, encoding):
     path = tmp_path / "p.txt"
     path.write_bytes(f"X [µm]\tZ [µm]\n{LINE}".encode(encoding))
     found = read_scan(path)
     assert found.heights[50] == pytest.approx(1e-6 * np.sin(50 / 3), abs=1e-12)
     assert found.length == pytest.approx(50e-6)
+
+
+@pytest.mark.parametrize("head", ["µm µm\n100\n", "x in µm, y in µm\n", "mm and um\n"])
+def test_a_unit_in_the_head_is_spoken_of_where_it_is_not_read(tmp_path, head):
+    with pytest.raises(InputError, match="is in words that are not read"):
+        read(tmp_path / "p.txt", head + LINE, xy_unit=None, z_unit=None)
+    assert "the unit is the one given" in read(tmp_path / "p.txt", head + LINE).notes[-1]
+
+
+def test_a_text_of_one_number_in_a_line_and_one_cut_in_a_letter_are_refused_as_such(tmp_path):
+    with pytest.raises(ReadError, match="no row of two numbers or more"):
+        read(tmp_path / "z.txt", "".join(f"{k}\n" for k in range(9)))
+    path = tmp_path / "cut.txt"
+    path.write_bytes(LINE.encode("utf-16")[:-1])
+    with pytest.raises(ReadError, match="line 100 .* is not"):
+        read_scan(path, xy_unit="um", z_unit="um")
 
 
 @pytest.mark.parametrize("word", ["***", "BAD", "nan"])

@@ -16,7 +16,7 @@ from faying.checks import instance, several
 from faying.checks import path as checked_path
 from faying.errors import FayingError, InputError, ReadError
 from faying.file_kinds import X3P, kind_held, kind_of, taken
-from faying.files import end_of
+from faying.files import UTF16, end_of
 from faying.surface.files.text import TextLayout
 from faying.surface.heights import ASK_SIZE, ASK_UNITS, BYTES, check_points, sides_of, steps_of
 from faying.surface.scan import Profile, Scan
@@ -279,14 +279,14 @@ def unpacked(file: Path) -> Iterator[Path]:
     """
     with file.open("rb") as handle:
         head = handle.read(len(COMPRESSED))
-    if not head.startswith((GZIP, COMPRESSED)):
+    if not head.startswith((GZIP, COMPRESSED, *UTF16)):
         yield file
         return
     with TemporaryDirectory() as folder:
         plain = Path(folder) / file.name.removesuffix(".gz")
         try:
             with plain.open("wb") as out:
-                (_gunzip if head.startswith(GZIP) else _points)(file, out)
+                (_gunzip if head.startswith(GZIP) else _points if head.startswith(COMPRESSED) else _utf8)(file, out)
         except (OSError, EOFError, zlib.error, struct.error) as fault:
             raise ReadError(f"{file}: it is compressed, and damaged or cut short ({fault}); copy it again") from None
         try:
@@ -303,6 +303,12 @@ def _gunzip(file: Path, out: BinaryIO) -> None:
             size += len(block)
             check_points(str(file), TIMES * size / BYTES)
             out.write(block)
+
+
+def _utf8(file: Path, out: BinaryIO) -> None:
+    """Write a text in UTF-16 as UTF-8."""
+    check_points(str(file), TIMES * file.stat().st_size / BYTES)
+    out.write(file.read_text("utf-16", "replace").encode())
 
 
 def _points(file: Path, out: BinaryIO) -> None:

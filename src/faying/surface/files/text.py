@@ -315,6 +315,8 @@ def refuse_lost(path: Path, points: int, *, unit: bool) -> None:
     if units != ["um", "Micrometer"] and any(unit not in _UNITS for unit in units):
         raise ReadError(f'{path}: "{head[-1]}": the units that are read are {", ".join(_UNITS)}; write them there')
     count = len(lines) - start
+    if not count:
+        raise ReadError(f"{path}: no row of two numbers or more; write x,z or x,y,z in rows, or a matrix of heights")
     if points not in (count, count * width):
         raise ReadError(
             f"{path}: {points} heights were read of {count} rows of numbers: the form of its head is not known"
@@ -323,7 +325,8 @@ def refuse_lost(path: Path, points: int, *, unit: bool) -> None:
 
 def _states_size(line: str) -> bool:
     """Whether a line of words speaks of a unit or a size."""
-    return states_unit(line, ("m",)) or bool(_SIZE.match(line)) or line.lower().startswith("cellsize")
+    bare = any(plain_unit(word) in _UNITS for word in re.split(r"[,;\s]+", line))
+    return bare or states_unit(line, ("m",)) or bool(_SIZE.match(line)) or line.lower().startswith("cellsize")
 
 
 def _refuse_positions(path: Path, data: Array) -> None:
