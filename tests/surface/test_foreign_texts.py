@@ -276,6 +276,14 @@ def test_one_value_far_from_all_others_is_missing(tmp_path, value, where):
     assert "taken as missing" in scan.notes[0]
 
 
+def test_a_value_that_most_points_have_is_missing_where_it_is_very_far(tmp_path):
+    for far, missing in ((-1000.0, 14 * NX), (-8.0, 0)):
+        scan = read(tmp_path / "a.csv", text(rows(np.where(np.arange(NY)[:, None] < 14, far, WAVES))))
+        assert np.isnan(scan.heights).sum() == missing
+    nearly_all = np.where(np.arange(NY)[:, None] < NY - 1, -1000.0, WAVES)
+    assert not np.isnan(read(tmp_path / "a.csv", text(rows(nearly_all))).heights).any()
+
+
 def test_values_on_both_ends_are_missing(tmp_path):
     table = WAVES.copy()
     table[2, 3:8], table[10, 3:8] = -1e3, 1e3

@@ -207,7 +207,8 @@ def without_sentinels(scan: Scan | Profile) -> Scan | Profile:
     """The scan with heights missing that stand for "no data": one value, many times, far from all others.
 
     The least, or the greatest, height of a scan is such a value where it stands three times or more, its distance to
-    the next one is more than the range of all others, and it has at most half of the points. A note says it.
+    the next one is more than the range of all others (ten times it, where more than half of the points are such), and
+    it has at most nine points of ten. A note says it.
     """
     known = scan.heights[np.isfinite(scan.heights)]
     if not known.size:
@@ -215,11 +216,11 @@ def without_sentinels(scan: Scan | Profile) -> Scan | Profile:
     ends = [end for end in (float(known.min()), float(known.max())) if np.sum(known == end) >= MIN_ALIKE]
     for some in (ends, *([end] for end in ends)):
         rest = known[~np.isin(known, some)]
-        if not some or 2 * rest.size < known.size:
+        if not some or 10 * rest.size < known.size:
             continue
         span = float(np.ptp(rest))
         gaps = [float(np.abs(rest - end).min()) for end in some]
-        if span > 0 and min(gaps) > span:
+        if span > 0 and min(gaps) > span * (1 if 2 * rest.size >= known.size else 10):
             heights = np.where(np.isin(scan.heights, some), np.nan, scan.heights)
             notes = (
                 f"{np.sum(known == end)} points are exactly {end:.6g} m high, {gap:.3g} m from all others, which are "
