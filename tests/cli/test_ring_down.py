@@ -11,6 +11,7 @@ import pytest
 import faying
 from faying.cli import main
 from faying.measured.ring_down import MeasuredBackbone
+from tests.measured.test_uff import function, raw
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "ring-down"
 RATE, HZ, RATIO = 4096.0, 100.0, 0.003
@@ -134,6 +135,10 @@ def test_what_an_frf_needs_is_said(record, capsys, tmp_path):
     code, said = call(capsys, record, "--band", "70 Hz")
     assert code == 1
     assert "two frequencies" in said.err
-    code, said = call(capsys, tmp_path / "hit.uff", *BAND)
+    hit = raw(tmp_path / "hit.uff", function())
+    code, said = call(capsys, hit, *BAND)
     assert code == 1
     assert '--impulse "0.3 N s"' in said.err
+    code, said = call(capsys, raw(hit, function(func_type=1, abscissa_spec_data_type=17)), *BAND)
+    assert code == 1
+    assert "no FRF (function type 4) in it, only time response" in said.err

@@ -66,12 +66,12 @@ def decay(record: Path, options: dict[str, Any]) -> Any:
         start = begin if options["start"] is None else units.parse(options["start"], "s", name="--start")
         found = ring_down(signal, rate, band=band, quantity=motion, cycles=cycles, start=start - begin)
         return replace(found, source=record.name, time=begin + found.time)
+    file = read_uff(record)
+    frf, pairs = file.frf(), file.pairs
     if options["impulse"] is None:
         raise InputError(f'{record}: an FRF does not give the strength of the hit; give --impulse "0.3 N s"')
     if options["start"] is not None:
         raise InputError("--start is for a record in time; an FRF begins with the hit, so leave --start out")
-    file = read_uff(record)
-    frf, pairs = file.frf(), file.pairs
     number = (options["function"] or 1) - 1
     if (options["function"] is None and len(pairs) > 1) or number >= len(pairs):
         named = ", ".join(f"{k}: {output} by {by}" for k, (output, by) in enumerate(pairs, start=1))
