@@ -77,10 +77,11 @@ class FrfColumns:
     named: bool = True
 
 
-def plain_layout(width: int) -> FrfColumns:
+def plain_layout(width: int, quantity: str) -> FrfColumns:
     """Frequency [Hz], then real and imaginary part of each FRF in SI, as a table without a heading is read."""
     pairs = tuple(Pair(first=k, second=k + 1, polar=False) for k in range(1, width, 2))
-    return FrfColumns(frequency=0, hertz=1.0, pairs=pairs, named=False)
+    note = f"no heading: the columns are taken as frequency in Hz, then real and imaginary parts in {UNITS[quantity]}"
+    return FrfColumns(frequency=0, hertz=1.0, pairs=pairs, notes=(note,), named=False)
 
 
 def read_layout(line: str, quantity: str, where: str) -> FrfColumns:
@@ -275,7 +276,7 @@ def read_frf_text(
         quantity=quantity,
         coherence=np.array(coherence)[:, None] if np.isfinite(coherence).any() else None,
         source=", ".join(str(f) for f in files),
-        warnings=tuple(notes),
+        warnings=tuple(dict.fromkeys(notes)),
     )
 
 
@@ -352,7 +353,7 @@ def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path)
         if len(cells) == width and any(names & _words(cell) for cell in cells for names in ROLES.values()):
             return read_layout(bare, quantity, f"{path}, line {number}")
     _refuse_units(above, path)
-    return plain_layout(width)
+    return plain_layout(width, quantity)
 
 
 def _refuse_units(above: list[tuple[int, str]], path: Path) -> None:
