@@ -186,6 +186,7 @@ def test_containers_of_contact_engineering(tmp_path, count):
                 f"    datafile: {{original: {k}.txt}}",
                 "    unit: um",
                 "    size: [64, 48]",
+                *["    detrend_mode: curvature"] * k,  # of the view, not of the heights
             ]
             archive.writestr(f"{k}.txt", text((k + 1) * WAVES, " "))
         archive.writestr("meta.yml", "\n".join(lines) + "\n")

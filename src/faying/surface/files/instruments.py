@@ -3,6 +3,7 @@
 import warnings
 import zipfile
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -136,7 +137,7 @@ def _opened(file: Path, library: Any, kind: str | None, wanted: str | None) -> _
 
 
 def _contained(file: Path, wanted: str | None) -> _Content:
-    """One measurement of a container of contact.engineering."""
+    """One measurement of a container of contact.engineering, with the form that its author has taken off."""
     from SurfaceTopography.Container.IO import CEReader
 
     try:
@@ -144,7 +145,8 @@ def _contained(file: Path, wanted: str | None) -> _Content:
         places = [(k, i) for k in range(reader.nb_containers) for i in range(len(reader.members(k)))]
         names = [f"{k + 1}: " * (reader.nb_containers > 1) + reader.members(k)[i].name for k, i in places]
         surface, place = places[_chosen(file, names, wanted)]
-        return _of(reader.container(surface)[place], stated=True)
+        found = reader.container(surface)[place]
+        return _of(found.parent_topography if hasattr(found, "detrend_mode") else found, stated=True)
     except FayingError:
         raise
     except Exception as fault:
@@ -209,8 +211,6 @@ def _instrument(info: dict[str, Any]) -> Instrument:
     for name in ("tip_radius", "resolution"):
         entry = parameters.get(name)
         if isinstance(entry, dict) and entry.get("value") is not None:
-            try:
+            with suppress(InputError, TypeError, ValueError):
                 values[name] = float(entry["value"]) * scale(plain_unit(str(entry.get("unit", "m"))), "m")
-            except (InputError, TypeError, ValueError):
-                continue
     return Instrument(name=str(data.get("name") or ""), **values)
