@@ -27,6 +27,19 @@ def test_degrees_and_squares_are_read_in_the_encoding_of_the_instrument(tmp_path
     np.testing.assert_allclose(frf.values.ravel(), [2j, -3], atol=1e-12)
 
 
+def test_an_frf_in_two_forms_is_one(tmp_path):
+    values = 1e-9 * np.array([1 + 2j, -3 + 1j, 2 - 7.5j])
+    file = tmp_path / "a.csv"
+    for size, count in ((1.0, 1), (1.1, 2)):
+        rows = [f"{v.real},{v.imag},{20 * np.log10(size * abs(v)):.3f},{np.angle(v, deg=True):.2f}" for v in values]
+        head = "frequency [Hz],real [m/N],imaginary [m/N],magnitude [dB re 1 m/N],phase [deg]\n"
+        file.write_text(head + "".join(f"{k},{row}\n" for k, row in enumerate(rows, start=1)))
+        frf = read_frf_text([file], quantity="receptance")
+        np.testing.assert_array_equal(frf.values[0, 0], values)
+        assert len(frf.outputs) == count
+        assert len(frf.warnings) == 2 - count
+
+
 def test_several_frfs_in_one_table(tmp_path):
     file = tmp_path / "a.txt"
     file.write_text("# two FRFs\n0 1 2 3 4\n1; 5; 6; 7; 8\n")

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import pairwise
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -75,13 +76,6 @@ class FrfColumns:
     coherence: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
     named: bool = True
-
-
-def plain_layout(width: int, quantity: str) -> FrfColumns:
-    """Frequency [Hz], then real and imaginary part of each FRF in SI, as a table without a heading is read."""
-    pairs = tuple(Pair(first=k, second=k + 1, polar=False) for k in range(1, width, 2))
-    note = f"no heading: the columns are taken as frequency in Hz, then real and imaginary parts in {UNITS[quantity]}"
-    return FrfColumns(frequency=0, hertz=1.0, pairs=pairs, notes=(note,), named=False)
 
 
 def read_layout(line: str, quantity: str, where: str) -> FrfColumns:
@@ -233,6 +227,7 @@ def _factor(cell: Cell, quantity: str, where: str, notes: list[str]) -> float:
 
 BOTH_PARTS = re.compile(r"\(\s*[-+]?[^-+\s]+(?:[eE][-+]?\d+)?\s*[-+]\s*[^-+\s]+(?:[eE][-+]?\d+)?[ij]\s*\)")
 NUMBER = re.compile(r"\(?[-+]?(\.?\d|(nan|inf)\b)", re.IGNORECASE)  # what a line of numbers begins with
+ALIKE = 1e-2  # how far two forms of one FRF may differ, by the digits of their table
 EVEN = 0.9  # share of steps that are alike, from which on a longer one is a gap
 
 
@@ -323,7 +318,10 @@ def _read(path: Path, step: float | None, quantity: str) -> tuple[Array, Complex
         raise ReadError(f"{path}: {fault}") from None
     frequency = layout.hertz * data[:, layout.frequency]
     coherence = data.T[list(layout.coherence)] if layout.coherence else np.full(functions.shape, np.nan)
-    return frequency, functions, coherence, (*layout.notes, *_gaps(frequency, path))
+    same = [np.allclose(a, b, rtol=ALIKE, atol=0, equal_nan=True) for a, b in pairwise(functions)]
+    new = [True, *(not s or a.polar == b.polar for s, (a, b) in zip(same, pairwise(layout.pairs), strict=True))]
+    twice = [] if all(new) else [f"{path}: an FRF stands in parts and as magnitude and phase; it is read once"]
+    return frequency, functions[new], coherence[new], (*layout.notes, *_gaps(frequency, path), *twice)
 
 
 def _gaps(frequency: Array, path: Path) -> list[str]:
@@ -353,7 +351,9 @@ def _layout(above: list[tuple[int, str]], width: int, quantity: str, path: Path)
         if len(cells) == width and any(names & _words(cell) for cell in cells for names in ROLES.values()):
             return read_layout(bare, quantity, f"{path}, line {number}")
     _refuse_units(above, path)
-    return plain_layout(width, quantity)
+    pairs = tuple(Pair(first=k, second=k + 1, polar=False) for k in range(1, width, 2))
+    note = f"no heading: the columns are taken as frequency in Hz, then real and imaginary parts in {UNITS[quantity]}"
+    return FrfColumns(frequency=0, hertz=1.0, pairs=pairs, notes=(note,), named=False)
 
 
 def _refuse_units(above: list[tuple[int, str]], path: Path) -> None:
