@@ -108,6 +108,14 @@ def hexagon_and_nut(path):
     return _write(path, **parts), [Drawn(size=10, ring=(11, 20), washers=2, says="nut")] * 2
 
 
+def one_plate(path):
+    """Two M10 with their nuts in a plate that no other part touches."""
+    parts = _plates((11,), (24,))
+    for k, place in enumerate(BOTH, 1):
+        parts |= {f"bolt {k}": screw(place, 24, 10, 45, ("hexagon", 16)), f"nut {k}": nut(place, -8.4, 10, 8.4, 16)}
+    return _write(path, **parts)
+
+
 def ring_nuts(path):
     """Two M10 in holes without play, each with a thin round ring without play for a nut."""
     parts = _plates((10, 10), (12, 12))

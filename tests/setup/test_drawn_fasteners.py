@@ -56,6 +56,13 @@ def test_bare_holes_in_line_with_a_drawn_bolt_have_a_bolt_of_their_own(tmp_path)
     }
 
 
+def test_one_part_beside_its_bolts_is_refused_by_what_they_are_taken_for(tmp_path):
+    """Head and nut touch the plate: that no faces touch would be wrong."""
+    path = drawn.one_plate(tmp_path / "plate.step")
+    with pytest.raises(faying.InputError, match="of two parts touch beside 'bolt 1', 'bolt 2', .*, taken for bolts"):
+        new.find(path)
+
+
 @pytest.mark.parametrize("name", drawn.MADE)
 def test_no_fastener_is_meshed(made, name):
     _, _, found = made(name)

@@ -96,7 +96,7 @@ def propose(facts: GeometryFacts, path: Path, *, mesh_bolts: bool = False) -> Pr
         facts = read_facts(path, unite=unite)
         fasteners = find_fasteners(facts, touching(facts))
     facts = facts.without(fasteners.left_out)
-    alone = _alone(facts, path)
+    alone = _alone(facts, path, fasteners.left_out)
     facts = facts.without(alone)
     contacts = touching(facts)
     free = free_rows(facts, fasteners)
@@ -204,16 +204,16 @@ def _pressed(
     return [contact for contact in contacts if contact not in aside and contact not in apart], remarks
 
 
-def _alone(facts: GeometryFacts, path: Path) -> tuple[str, ...]:
+def _alone(facts: GeometryFacts, path: Path, fasteners: Sequence[str]) -> tuple[str, ...]:
     """Parts of which no flat face touches another part. Raises InputError where that holds for all."""
     contacts = touching(facts)
     if not contacts:
-        apart = part_distance(path)
-        assert apart is not None
-        raise InputError(
-            f"{facts.file}: no flat faces of two parts touch; the nearest parts are {apart[0]!r} and {apart[1]!r}, "
-            f"{show(apart[2], 'm')} apart. Move them together in the CAD program, or check what `faying faces` lists"
-        )
+        apart = None if fasteners else part_distance(path)
+        why = f" beside {quoted(fasteners)}, taken for bolts, nuts, washers, dowels; faying init begins a study by hand"
+        if apart is not None:
+            why = f"; the nearest parts are {apart[0]!r} and {apart[1]!r}, {show(apart[2], 'm')} apart. Move them "
+            why += "together in the CAD program, or check what `faying faces` lists"
+        raise InputError(f"{facts.file}: no flat faces of two parts touch{why}")
     joined = {part for contact in contacts for part in contact.parts}
     return tuple(part.name for part in facts.parts if part.name not in joined)
 
