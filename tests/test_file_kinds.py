@@ -53,14 +53,16 @@ def test_a_mesh_is_the_same_under_every_name(tmp_path, form):
         (f"{'':72}S      1\n1H,,1H;,4HSLOT,\n", "an IGES file"),
         ("ISO-10303-21;\nHEADER;\n", "a STEP file"),
         ("%%MatrixMarket matrix coordinate real symmetric\n", "Matrix Market"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:0a\nsize 12\n", "a pointer of Git LFS"),
+        ("# of AVS\n8 1 0 0 0\n1 0 0 0\n2 20 0 0\n", "a UCD file of AVS"),
     ],
 )
 def test_what_a_mesh_command_does_not_read_is_refused_by_what_it_is(tmp_path, text, says):
-    path = tmp_path / "all.msh"
+    path = tmp_path / ("all.inp" if "AVS" in says else "all.msh")
     path.write_text(text)
     with pytest.raises(faying.ReadError, match=f"{says}.*not read here.*a mesh of Gmsh") as refusal:
         taken(path, "mesh")
-    assert "all.msh" in str(refusal.value)
+    assert path.name in str(refusal.value)
 
 
 @pytest.mark.parametrize("form", ["abaqus", "nastran", "gmsh", "unv", "ansys"])

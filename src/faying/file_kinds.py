@@ -38,7 +38,9 @@ _COMMANDS = r"/(?:BATCH|COM|PREP7|NOPR|TITLE|FILNAME|WB|SOLU|CLEAR|UNITS|CONFIG)
 _MAPDL = rf"(?:[ \t]*(?:!.*)?\n)*[ \t]*(?:(?:{_COMMANDS}|{_OPERATORS})\b|(?:ET|(?:ET|N|E|CM)BLOCK)[ \t]*,)"
 _PARTS = r"HEADING|PREPRINT|PARAMETER|INCLUDE|PART|ASSEMBLY|INSTANCE|SYSTEM|NODE|ELEMENT|NSET|ELSET|SURFACE|TRANSFORM"
 _STEPS = r"BOUNDARY|MATERIAL|ORIENTATION|AMPLITUDE|EQUATION|SOLID SECTION|RESTART|STEP"
-_ABAQUS = rf"(?:[ \t]*(?:\*\*.*)?\n)*[ \t]*\*[ \t]*(?:{_PARTS}|{_STEPS})\b|{_ROW}"  # rows alone: lines to include
+_UCD = r"(?:#.*\n)*[ \t]*\d+(?:[ \t]+\d+){4}[ \t]*\n"
+_LINES = rf"(?!{_UCD}){_ROW}"  # to include
+_ABAQUS = rf"(?:[ \t]*(?:\*\*.*)?\n)*[ \t]*\*[ \t]*(?:{_PARTS}|{_STEPS})\b|{_LINES}"
 _CARDS = r"GRID|C(?:TETRA|HEXA|PENTA|TRIA|QUAD|ORD)\w*|DMIG|MAT1|PSOLID|PLOAD4|SET1|RBE[23]|CONM2|SPC1?|EIGRL"
 _CONTROL = r"BEGIN[ \t]+BULK|CEND|ENDDATA|SOL[ \t]+\w+|NASTRAN|ASSIGN|INCLUDE[ \t]+['\"].*"
 _BEFORE = r"(?:[ \t]*(?:\$.*|(?:ID|TIME|PARAM)\b.*|[A-Z][^=\n]*=.*)?\n)*+"  # lines that other programs have, too
@@ -73,6 +75,7 @@ KINDS = (
     FileKind(
         says="a text of points or heights", holds=_POINTS, suffixes=(".xyz", ".asc", ".txt"), serves=("scan", "numbers")
     ),
+    FileKind(says="a pointer of Git LFS (get the file itself by git lfs pull)", holds="version https://git-lfs"),
     *(STEP, ABAQUS, NASTRAN, VTU, MED, RESULT, STUDY, X3P, MARKET, SPARSE),
     FileKind(says="an input file of Ansys (MAPDL)", holds=_MAPDL, suffixes=(".cdb",), serves=("mesh",), reader="mapdl"),
     FileKind(says="a mesh of Gmsh", holds=_GMSH, suffixes=(".msh",), serves=("mesh",), reader="gmsh"),
@@ -86,6 +89,7 @@ KINDS = (
     FileKind(says="a table as text", holds="(?!)", suffixes=(".csv", ".dat"), serves=("test", "numbers")),
     FileKind(says="a mesh of Ansys Fluent", holds=r"\s*\([012][ \t]+[\"\d]"),
     FileKind(says="an input file of LS-DYNA", holds=r"(?:\$.*\n)*\*KEYWORD\b"),
+    FileKind(says="a UCD file of AVS", holds=_UCD, suffixes=(".inp",)),
     FileKind(says="an IGES file", holds=r".{72}S {6}1", suffixes=(".igs", ".iges")),
 )
 
