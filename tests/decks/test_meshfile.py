@@ -521,6 +521,36 @@ def test_nodes_and_elements_of_single_commands_of_ansys_are_named(tmp_path):
     assert "nodes and elements of the commands N, EN, outside the blocks, are not read" in [note.text for note in notes]
 
 
+@pytest.mark.parametrize("name", ["m.vtk", "m.vtu", "m.msh", "m.unv"])
+def test_lines_that_leave_the_solids_are_counted(tmp_path, name):
+    """A cable from a corner to a point off the solids; lines along the edges of solids are none."""
+    expected = two()
+    a, b = map(int, expected.part_nodes("p0")[:2])
+    off = len(expected.points)
+    if name == "m.unv":
+        text = meshfiles.unv(expected)
+        node = f"{9001:10d}{1:10d}{1:10d}{11:10d}\n   0.0D+00   0.0D+00   1.0D+02\n"
+        corner, other = meshfiles.numbers(expected)[[a, b]]
+        rods = [
+            f"{9000 + k:10d}{11:10d}{1:10d}{1:10d}{7:10d}{2:10d}\n{0:10d}{1:10d}{1:10d}\n{corner:10d}{end:10d}\n"
+            for k, end in enumerate((other, 9001))
+        ]
+        text = text.replace("  2411\n", f"  2411\n{node}").replace("  2412\n", "  2412\n" + "".join(rods))
+        written(tmp_path, text, name)
+    else:
+        meshio = pytest.importorskip("meshio")
+        points = np.vstack([expected.points * 1e3, [0, 0, 100]])
+        cells = [*(("hexahedron", block) for block in expected.blocks), ("line", np.array([[a, b], [a, off]]))]
+        data = {"gmsh:physical": [np.full(len(some), 1) for _, some in cells]} if name == "m.msh" else {}
+        data |= {"gmsh:geometrical": data["gmsh:physical"]} if data else {}
+        out = meshio.Mesh(points, cells, cell_data=data)
+        out.write(tmp_path / name, **({"file_format": "gmsh22", "binary": False} if data else {}))
+    mesh = faying.read_mesh(tmp_path / name, unit="mm")
+    assert len(mesh.points) == off
+    (note,) = [note.text for note in mesh.notes if note.text.startswith("lines off all solids")]
+    assert re.search(r"left out with 1 nodes: \d+$", note)
+
+
 def test_fields_of_nastran_that_repeat_a_card_are_refused(tmp_path):
     text = meshfiles.nastran(two())
     first = next(line for line in text.splitlines() if line.startswith("GRID"))

@@ -204,6 +204,7 @@ def read(path: Path) -> RawMesh:
         bodies={name: index(some) for name, some in own.items()},
         face_elements={name: face_blocks(some) for name, some in faces.items()},
         extra=index(extra),
+        lines=index(node for _, code, _, corners in rows if code in (1, 8) for node in corners),
         notes=(
             *(
                 f"the physical volumes {other!r} and {name!r} have the same elements; the part is called {name!r}"

@@ -223,9 +223,7 @@ class _Builder:
         for block in cells:
             used[block] = True
         loose = self.raw.numbers[~used & ~np.isin(self.raw.numbers, self.raw.extra)]
-        points_of_reference = np.concatenate(
-            [self.raw.references, *(some for some in self.raw.node_sets.values() if len(some) == 1)]
-        )
+        points_of_reference = joined([self.raw.references, *(s for s in self.raw.node_sets.values() if len(s) == 1)])
         lost = loose[~np.isin(loose, points_of_reference)]
         if len(lost) > max(FEW_NODES, MAX_LOST * len(points)) and not self.raw.counted:
             raise InputError(
@@ -238,6 +236,9 @@ class _Builder:
             self._note("reference-points", text)
         if len(lost):
             self._note("left-out", f"{len(lost)} nodes belong to no element and are left out: {few(lost)}")
+        apart = np.setdiff1d(self.raw.lines, self.raw.numbers[used])
+        if len(apart):
+            self._note("left-out", f"lines off all solids (beams) are left out with {len(apart)} nodes: {few(apart)}")
 
     def _parts(
         self, numbers: Index, cells: list[Index], wanted: Mapping[str, str] | Sequence[str] | None

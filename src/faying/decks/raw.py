@@ -51,10 +51,10 @@ class RawMesh:
     numbers (n,), points (n, 3); elements: kind -> (numbers (e,), node numbers (e, a)) in VTK's order; bodies: name ->
     element numbers, the parts that the file itself makes of its elements; element_sets, node_sets: name -> numbers;
     side_sets: name -> rows of (element number, side); face_elements: name -> arrays of node numbers (f, a); extra:
-    numbers of nodes that only elements other than solids hold; references: nodes that constraints alone name; turned:
-    nodes whose displacements are in directions of their own; notes: what was left out; pretensions: sections at which
-    bolts are tightened; counted: whether the file says how many nodes and elements it has, and has them, or where it
-    ends. Raises ReadError for numbers below 1 or without end, and places that are not finite.
+    numbers of nodes that only elements other than solids hold; lines: nodes of lines that no note counts; references:
+    nodes that constraints alone name; turned: nodes displaced in directions of their own; notes: what was left out;
+    pretensions: sections at which bolts are tightened; counted: whether the file says how many nodes and elements it
+    has, and has them, or where it ends. Raises ReadError for numbers below 1 or without end, and places not finite.
     """
 
     numbers: Index
@@ -66,6 +66,7 @@ class RawMesh:
     side_sets: Mapping[str, Index] = field(default_factory=dict)
     face_elements: Mapping[str, tuple[Index, ...]] = field(default_factory=dict)
     extra: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    lines: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     references: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     turned: Index = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     notes: tuple[str, ...] = ()

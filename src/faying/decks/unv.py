@@ -90,6 +90,7 @@ def read(path: Path) -> RawMesh:
         node_sets={name: index(nodes) for name, (_, nodes) in groups.items() if nodes},
         face_elements={name: face_blocks(some) for name, some in faces.items() if some},
         extra=index([*extra, *(n for nodes in shells.values() for n in nodes)]),
+        lines=index(extra),
         notes=tuple(notes),
     )
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from faying.decks.raw import RawMesh, index
+from faying.decks.raw import RawMesh, joined
 from faying.errors import InputError, ReadError
 from faying.fe.elements import KINDS
 from faying.file_kinds import MED, VTU, taken
@@ -82,7 +82,8 @@ def read(path: Path) -> RawMesh:
         elements={kind: (n, _in_order(points, cells, kind)) for kind, (n, cells) in elements.items()},
         bodies={name: np.concatenate(some) for name, some in bodies.items()},
         face_elements={name: tuple(some) for name, some in faces.items()},
-        extra=np.concatenate(extra) if extra else index([]),
+        extra=joined(extra),
+        lines=joined(np.ravel(block.data) + 1 for block in found.cells if "line" in block.type),
     )
 
 
