@@ -551,6 +551,14 @@ def test_lines_that_leave_the_solids_are_counted(tmp_path, name):
     assert re.search(r"left out with 1 nodes: \d+$", note)
 
 
+def test_names_of_gmsh_2_0_do_not_say_of_what(tmp_path):
+    expected = two(gap=1e-4)
+    text = meshfiles.gmsh(expected)
+    early = re.sub(r"^[23] (\d+) \"", r'\1"', text.replace("2.2 0 8", "2 0 8"), flags=re.M)
+    assert early != text.replace("2.2 0 8", "2 0 8")
+    same(faying.read_mesh(written(tmp_path, early, "m.msh"), unit="mm"), expected)
+
+
 def test_fields_of_nastran_that_repeat_a_card_are_refused(tmp_path):
     text = meshfiles.nastran(two())
     first = next(line for line in text.splitlines() if line.startswith("GRID"))

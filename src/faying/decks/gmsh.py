@@ -156,12 +156,13 @@ def _names(words: _Words | _Bytes | None) -> dict[tuple[int, int], str]:
         shown = count.decode(errors="replace")[:60]
         raise ReadError(f"$PhysicalNames announces {shown!r} names and has {len(lines)}; is the file complete?")
     for line in lines:
-        found = re.fullmatch(rb'\s*([0-3])\s+(\d+)\s+"?([^"]*)"?\s*', line)
+        found = re.fullmatch(rb'\s*(?:([0-3])\s+)?(\d+)(?:\s+|(?="))"?([^"]*)"?\s*', line)
         if found is None:
             raise ReadError(
                 f"$PhysicalNames: {line.decode(errors='replace')[:60]!r} should be dimension, number and name"
             )
-        out[int(found[1]), int(found[2])] = found[3].decode("utf-8", errors="replace").strip()
+        for dimension in (found[1],) if found[1] else range(4):  # 2.0 does not say which
+            out[int(dimension), int(found[2])] = found[3].decode("utf-8", errors="replace").strip()
     return out
 
 
@@ -213,7 +214,7 @@ def read(path: Path) -> RawMesh:
             *(
                 f"the physical {'volume' if dimension == 3 else 'surface'} {name!r} has no elements"
                 for (dimension, _), name in names.items()
-                if dimension > 1 and name not in (bodies if dimension == 3 else faces)
+                if dimension > 1 and version not in (b"2", b"2.0") and name not in (bodies if dimension == 3 else faces)
             ),
         ),
     )
