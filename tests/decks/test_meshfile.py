@@ -559,6 +559,11 @@ def test_names_of_gmsh_2_0_do_not_say_of_what(tmp_path):
     same(faying.read_mesh(written(tmp_path, early, "m.msh"), unit="mm"), expected)
 
 
+def test_a_script_of_ansys_without_a_mesh_is_not_called_damaged(tmp_path):
+    script = "/PREP7\nET,1,SOLID185\nET,cid,174\nBLOCK,0,1,0,1,0,1\nVMESH,ALL\n*VWRITE,A\n(1X,F10.3)\nFINISH\n"
+    fault(tmp_path, script, "holds 0 nodes in NBLOCK, 0 solids and 0 other elements", "m.cdb")
+
+
 def test_fields_of_nastran_that_repeat_a_card_are_refused(tmp_path):
     text = meshfiles.nastran(two())
     first = next(line for line in text.splitlines() if line.startswith("GRID"))

@@ -75,7 +75,7 @@ class _Archive:
         if name in blocks:
             return blocks[name](k, words)
         if name == "ET":
-            if len(words) > 2:
+            if len(words) > 2 and words[1].isdigit():  # not of a parameter
                 self.kinds[int(words[1])] = re.sub(r"\D", "", words[2])
             return k + 1
         self.bolts.take(name, words)
@@ -92,8 +92,8 @@ class _Archive:
         """What was read, with notes on what was not."""
         if not self.numbers or not self.rows:
             raise ReadError(
-                f"{self.path} holds {len(self.numbers)} nodes in NBLOCK and {sum(map(len, self.rows.values()))} solids "
-                "in EBLOCK; write the archive with CDWRITE,DB in blocked format"
+                f"{self.path} holds {len(self.numbers)} nodes in NBLOCK, {sum(map(len, self.rows.values()))} solids "
+                f"and {len(self.dropped)} other elements in EBLOCK; give solids, in blocked format (CDWRITE,DB)"
             )
         notes = _left_out([kind for kind in self.dropped.values() if kind in _LEFT_OUT], self.commands)
         if not any(line.strip().upper() == "FINISH" for line in self.lines):
@@ -124,7 +124,7 @@ class _Archive:
         """
         line = self.lines[k].strip()
         before = self.lines[k - 1].lstrip().upper()
-        led = before.startswith("(") or "BLOCK" in before.partition(",")[0]  # RLBLOCK has two lines of forms
+        led = before.startswith(("(", "*VW", "*VR", "*MW")) or "BLOCK" in before.partition(",")[0]  # RLBLOCK has two
         if line.startswith("(") and not led:
             raise ReadError(
                 f"{self.path.name}, line {k + 1}: {line!r} gives the form of a block, but the line before is not a "
