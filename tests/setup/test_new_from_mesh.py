@@ -10,9 +10,12 @@ import faying
 from faying.case.case import checked_mesh
 from faying.cli.main import cli
 from faying.decks.meshfile import read_pretensions
+from faying.fe.mesh import Mesh
 from faying.study import Study
 from tests.helpers import meshfiles
 from tests.helpers.plates import LAW
+from tests.helpers.rings import disc
+from tests.helpers.sides import sides_on
 from tests.helpers.voxels import bolted
 
 
@@ -199,3 +202,22 @@ def test_a_unit_goes_with_a_mesh_file_alone(tmp_path, mesh):
     assert 'unit = "mm"' in str(done.exception)
     done = call("new", tmp_path / "a.step", "--unit", "mm", "--yes", "--out", tmp_path / "s.toml")
     assert "a STEP file states its unit" in str(done.exception)
+
+
+def test_round_faces_that_touch_are_not_said_to_be_apart(tmp_path):
+    """A ring in a ring: a joint is proposed for flat faces alone, and the words must not deny the others."""
+    points, parts, faces, offset = [], {}, {}, 0
+    for name, radii in (("inner", (5e-3, 10e-3)), ("outer", (10e-3, 15e-3))):
+        where, cells = disc(radii, 24, (0, 5e-3))
+        on = np.flatnonzero(np.abs(np.hypot(*where[:, :2].T) - 10e-3) < 1e-9)
+        faces[f"{name}.wall"] = tuple(side + offset for side in sides_on(on, (cells,), len(where)))
+        parts[name] = (cells + offset,)
+        points.append(where)
+        offset += len(where)
+    owner = {face: face.partition(".")[0] for face in faces}
+    rings = Mesh(points=np.concatenate(points), parts=parts, faces=faces, face_part=owner)
+    (tmp_path / "m.inp").write_text(meshfiles.abaqus(rings))
+    done = call("new", tmp_path / "m.inp", "--unit", "mm", "--yes", "--out", tmp_path / "s.toml")
+    assert "0 joints" in done.output
+    assert "no two flat named faces touch" in done.output
+    assert "No two named faces" not in (tmp_path / "s.toml").read_text()

@@ -54,7 +54,7 @@ def propose_mesh(path: Path, unit: str | None) -> Proposal:
             bolts.append(found)
     remarks += apart
     if not contacts and len(facts.parts) > 1:
-        remarks.append("no two named faces touch: name the faces of the joints in the file, one on each side")
+        remarks.append("no two flat named faces touch: name those of the joints in the file, or write [[joint]]")
     return Proposal(
         facts=facts,
         faces={},

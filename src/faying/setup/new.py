@@ -220,7 +220,7 @@ def study_text(proposal: Proposal, step: Path, out: Path, answers: Answers) -> t
     return "\n".join(block for block in blocks if block), [*assumed, *proposal.remarks]
 
 
-NO_JOINT = """# No two named faces of the file touch. Name the faces of a joint in the file, one on each side.
+NO_JOINT = """# No joint was found. Name the two faces of each one (see `faying faces`).
 # [[joint]]
 # name = "joint"
 # faces = ["FACE_A", "FACE_B"]
