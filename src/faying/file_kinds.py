@@ -39,8 +39,7 @@ _MAPDL = rf"(?:[ \t]*(?:!.*)?\n)*[ \t]*(?:(?:{_COMMANDS}|{_OPERATORS})\b|(?:ET|(
 _PARTS = r"HEADING|PREPRINT|PARAMETER|INCLUDE|PART|ASSEMBLY|INSTANCE|SYSTEM|NODE|ELEMENT|NSET|ELSET|SURFACE|TRANSFORM"
 _STEPS = r"BOUNDARY|MATERIAL|ORIENTATION|AMPLITUDE|EQUATION|SOLID SECTION|RESTART|STEP"
 _UCD = r"(?:#.*\n)*[ \t]*\d+(?:[ \t]+\d+){4}[ \t]*\n"
-_LINES = rf"(?!{_UCD}){_ROW}"  # to include
-_ABAQUS = rf"(?:[ \t]*(?:\*\*.*)?\n)*[ \t]*\*[ \t]*(?:{_PARTS}|{_STEPS})\b|{_LINES}"
+_ABAQUS = rf"(?:[ \t]*(?:\*\*.*)?\n)*[ \t]*\*[ \t]*(?:{_PARTS}|{_STEPS})\b|(?!{_UCD}){_ROW}"  # rows: to include
 _CARDS = r"GRID|C(?:TETRA|HEXA|PENTA|TRIA|QUAD|ORD)\w*|DMIG|MAT1|PSOLID|PLOAD4|SET1|RBE[23]|CONM2|SPC1?|EIGRL"
 _CONTROL = r"BEGIN[ \t]+BULK|CEND|ENDDATA|SOL[ \t]+\w+|NASTRAN|ASSIGN|INCLUDE[ \t]+['\"].*"
 _BEFORE = r"(?:[ \t]*(?:\$.*|(?:ID|TIME|PARAM)\b.*|[A-Z][^=\n]*=.*)?\n)*+"  # lines that other programs have, too

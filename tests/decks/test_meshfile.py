@@ -559,6 +559,13 @@ def test_names_of_gmsh_2_0_do_not_say_of_what(tmp_path):
     same(faying.read_mesh(written(tmp_path, early, "m.msh"), unit="mm"), expected)
 
 
+def test_a_brick_of_ansys_without_a_middle_node_is_named(tmp_path):
+    archive = meshfiles.ansys(two(("hex20", "hex20"), gap=1e-4)).splitlines()
+    line = archive.index("(19i9)") + 2
+    archive[line] = archive[line][:-9] + f"{0:9d}"
+    fault(tmp_path, "\n".join(archive), r"element 9 \(SOLID186\) lacks a node in the middle of an edge", "m.cdb")
+
+
 def test_a_script_of_ansys_without_a_mesh_is_not_called_damaged(tmp_path):
     script = "/PREP7\nET,1,SOLID185\nET,cid,174\nBLOCK,0,1,0,1,0,1\nVMESH,ALL\n*VWRITE,A\n(1X,F10.3)\nFINISH\n"
     fault(tmp_path, script, "holds 0 nodes in NBLOCK, 0 solids and 0 other elements", "m.cdb")

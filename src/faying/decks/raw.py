@@ -139,8 +139,10 @@ def face_blocks(rows: Iterable[list[int]]) -> tuple[Index, ...]:
 def undoubled(nodes: list[int], what: str) -> tuple[str, list[int]]:
     """Kind and nodes of a solid given as a brick with corners that coincide, as ANSYS writes wedges and tetrahedra.
 
-    Raises ReadError for other shapes, pyramids among them.
+    Raises ReadError for other shapes, pyramids among them, and where a middle node is 0.
     """
+    if 0 in nodes:
+        raise ReadError(f"{what} lacks a node in the middle of an edge; mesh with all of them, or with none")
     corners = nodes[:8]
     different = len(set(corners))
     quadratic = len(nodes) > 8

@@ -66,12 +66,10 @@ def read(path: Path) -> RawMesh:
             elements[kind] = (np.concatenate([have[0], count]), np.concatenate([have[1], cells]))
             for name, some in sets.of(number, "part", len(cells)):
                 bodies.setdefault(name, []).append(count[some])
-        elif block.type in _FACES:
+        elif block.type in _FACES or block.type in _PASSED:
             extra.append(cells.ravel())
-            for name, some in sets.of(number, "face", len(cells)):
+            for name, some in sets.of(number, "face", len(cells)) if block.type in _FACES else ():
                 faces.setdefault(name, []).append(cells[some, : _FACES[block.type]])
-        elif block.type in _PASSED:
-            extra.append(cells.ravel())
         else:
             raise ReadError(f"{path}: cells of type {block.type} are not known; the known ones are {', '.join(_KINDS)}")
     if not elements:
