@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import faying
+from faying.decks import mapdl
 from faying.decks.bulk import number
+from faying.decks.vocabulary import CONTACT, WORDS
 from faying.fe.elasticity import assemble
 from faying.fe.interface import join
 from faying.fe.sides import face_centre
@@ -439,6 +441,24 @@ def test_faults_of_other_formats(tmp_path):
         fault(tmp_path, changed, f"{command.partition(',')[0]} changes nodes or elements", "m.cdb")
     if pytest.importorskip("meshio"):
         fault(tmp_path, "nonsense", "cannot be read as VTK", "m.vtu")
+
+
+def test_elements_of_pressures_and_contacts_in_compact_blocks_are_left_out(tmp_path):
+    """As Workbench writes them into ds.dat: no key SOLID, five numbers before the nodes, types by parameters."""
+    archive = meshfiles.ansys(two())
+    row = "".join(f"{number:9d}" for number in (90001, 7, 7, 7, 0, 1, 2, 3, 4))
+    more = f"*set,tid,7\net,tid,174\neblock,10,,,1\n(15i9)\n{row}\n-1\n"
+    plain, changed = tmp_path / "plain.dat", tmp_path / "ds.dat"
+    plain.write_text(archive)
+    changed.write_text(archive.replace("FINISH", more + "FINISH"))
+    without, found = (mapdl.read(path) for path in (plain, changed))
+    assert {k: v.tolist() for k, (_, v) in found.elements.items()} == {
+        k: v.tolist() for k, (_, v) in without.elements.items()
+    }
+    assert [note for note in found.notes if note not in without.notes] == [f"CONTA174 (1): {WORDS[CONTACT]}"]
+    changed.write_text(archive.replace("FINISH", more.replace("et,tid,174", "et,tid,185") + "FINISH"))
+    with pytest.raises(faying.ReadError, match="and type 7 is 185; write the archive"):
+        mapdl.read(changed)
 
 
 def test_pyramids_in_an_archive_are_named(tmp_path):

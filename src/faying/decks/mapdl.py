@@ -17,7 +17,7 @@ import numpy as np
 
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, members, real, reals
 from faying.decks.raw import Pretension, RawMesh, gathered, index, joined, not_in_file, ranged, undoubled
-from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, left_out
+from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, CONTACT, left_out
 from faying.errors import ReadError
 from faying.typing import Array, Index
 
@@ -64,6 +64,7 @@ class _Archive:
     turned: list[int] = field(default_factory=list)
     dropped: dict[int, str] = field(default_factory=dict)  # numbers and types of elements that are not solids
     commands: list[str] = field(default_factory=list)
+    parameters: dict[str, str] = field(default_factory=dict)  # whole numbers of *SET by name
     bolts: "_Bolts" = field(default_factory=lambda: _Bolts())
     last: int = -1  # the last line that is not read; a block that is read ends at any other line
 
@@ -74,9 +75,12 @@ class _Archive:
         blocks = {"ETBLOCK": self._types, "NBLOCK": self._nodes, "EBLOCK": self._elements, "CMBLOCK": self._component}
         if name in blocks:
             return blocks[name](k, words)
-        if name == "ET":
-            if len(words) > 2 and words[1].isdigit():  # not of a parameter
-                self.kinds[int(words[1])] = re.sub(r"\D", "", words[2])
+        if name == "*SET" and len(words) > 2 and words[2].isdigit():
+            self.parameters[words[1].upper()] = words[2]
+        if name == "ET" and len(words) > 2:
+            number = self.parameters.get(words[1].upper(), words[1])
+            if number.isdigit():
+                self.kinds[int(number)] = re.sub(r"\D", "", words[2])
             return k + 1
         self.bolts.take(name, words)
         if name in (*_OF_NODES, *_OF_ELEMENTS, "CDREAD", "/INPUT"):
@@ -95,7 +99,7 @@ class _Archive:
                 f"{self.path} holds {len(self.numbers)} nodes in NBLOCK, {sum(map(len, self.rows.values()))} solids "
                 f"and {len(self.dropped)} other elements in EBLOCK; give solids, in blocked format (CDWRITE,DB)"
             )
-        notes = _left_out([kind for kind in self.dropped.values() if kind in _LEFT_OUT], self.commands)
+        notes = _left_out([*self.dropped.values()], self.commands)
         if not any(line.strip().upper() == "FINISH" for line in self.lines):
             notes.append(f"{self.path.name} has no FINISH: it may be cut short")
         heads = [line.split(",") for line in self.lines if line.upper().startswith(("NBLOCK", "EBLOCK"))]
@@ -179,18 +183,21 @@ class _Archive:
         return k + 1
 
     def _elements(self, k: int, words: list[str]) -> int:
-        """Solids of an EBLOCK, and nodes of what is left out."""
-        if len(words) < 3 or words[2].upper() != "SOLID":
-            raise ReadError(
-                f"line {k + 1}: EBLOCK without the key SOLID is not known; write the archive with CDWRITE,DB"
-            )
+        """Solids of an EBLOCK, and nodes of what is left out; without the key SOLID nothing but such."""
+        solid = len(words) > 2 and words[2].upper() == "SOLID"
         width = _width(self.lines[k + 1])
         begin, found = k, 0
         k += 2
         while (head := _cut(self.lines[k], width))[0] != -1:
             found += 1
-            count, number, nodes = head[8], head[10], head[11:]
+            count, number, nodes = (head[8], head[10], head[11:]) if solid else (len(head) - 5, head[0], head[5:])
             k += 1
+            if not solid and self.kinds.get(head[1]) not in {*_SURFACE, *_LEFT_OUT}:
+                raise ReadError(
+                    f"line {k}: EBLOCK without the key SOLID is read for elements of surfaces, contacts and the like "
+                    f"alone, and type {head[1]} is {self.kinds.get(head[1], 'none of them')}; write the archive with "
+                    "CDWRITE,DB"
+                )
             while len(nodes) < count:
                 nodes += _cut(self.lines[k], width)
                 k += 1
@@ -242,13 +249,15 @@ def _left_out(elements: list[str], commands: list[str]) -> list[str]:
         f"{elements.count(kind)} elements of type {kind} ({_LEFT_OUT[kind]}) are left out, with their stiffness and "
         "mass" + ("; give the bolts in [[bolt]] of the study, or let faying new propose them" if kind == "179" else "")
         for kind in dict.fromkeys(elements)
+        if kind in _LEFT_OUT
     ]
     made = [name for name in _MAKERS if name in commands]
     if made:
         notes.append(f"nodes and elements of the commands {', '.join(made)}, outside the blocks, are not read")
     bolts = [name for name in commands if name in ("PSMESH", "SLOAD")]
     rest = [name for name in commands if name not in (*bolts, *made)]
-    return notes + left_out({BOLT: bolts, CONSTRAINT: rest}, "")
+    touching = [f"CONTA{kind}" for kind in elements if kind in ("171", "172", "173", "174", "175", "176")]
+    return notes + left_out({BOLT: bolts, CONSTRAINT: rest, CONTACT: touching}, "")
 
 
 @dataclass
