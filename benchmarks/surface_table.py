@@ -28,7 +28,8 @@ from faying.surface.estimators.table import METHODS
 from faying.surface.form import prepared
 from faying.surface.fractal import fit_fractal
 from faying.surface.scan import Scan
-from faying.surface.synthesize import spectral, with_missing, with_noise
+from faying.surface.synthesize import spectral
+from tests.helpers.imperfect import with_missing, with_noise
 
 SIZES = (256, 512, 1024, 2048)
 SHARES = (0.5, 0.35, 0.12, 0.03)

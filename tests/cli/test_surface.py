@@ -6,7 +6,8 @@ import pytest
 from faying import Profile, Scan
 from faying.cli import main
 from faying.surface.files.write import write_scan
-from faying.surface.synthesize import spectral, with_missing
+from faying.surface.synthesize import spectral
+from tests.helpers.imperfect import with_missing
 
 
 @pytest.fixture

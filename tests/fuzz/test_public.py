@@ -65,8 +65,6 @@ CALLS = {
         {"shape": (16, 16), "spacing": 1e-6, "D": 2.4, "Rq": 1e-7, "longest": 1e-5, "periodic": False, "gamma": 1.5}
         | {"shortest": 3e-6, "convention": "yan-komvopoulos", "seed": 1, "lay": (0.1, 2.0)},
     ),
-    "synthesize.with_noise": (synthesize.with_noise, {"scan": SCAN, "rms": 1e-9, "seed": 1}),
-    "synthesize.with_missing": (synthesize.with_missing, {"scan": SCAN, "share": 0.1, "seed": 1}),
     "read_scan": (faying.read_scan, {"path": "SCAN.csv", "z_unit": "um", "spacing": 1e-6}),
     "write_scan": (faying.write_scan, {"scan": SCAN, "path": "OUT.x3p", "precision": "D"}),
     "Material": (

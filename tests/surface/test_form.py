@@ -9,7 +9,8 @@ from faying import InputError, Scan
 from faying.surface.form import filled, find_spikes, levelled, prepared
 from faying.surface.roughness import mean_peak_to_valley, roughness
 from faying.surface.scan import Profile
-from faying.surface.synthesize import spectral, with_missing
+from faying.surface.synthesize import spectral
+from tests.helpers.imperfect import with_missing
 
 
 def grid(n=60, m=80, d=1e-6):

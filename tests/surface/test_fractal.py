@@ -12,8 +12,9 @@ from faying.surface.convention import cut_factor, implied_Rq
 from faying.surface.estimators.table import ESTIMATORS, METHODS, share_left, window_transfer
 from faying.surface.fractal import fit_all
 from faying.surface.fractal_fit import consistency
-from faying.surface.synthesize import spectral, with_missing, with_noise
+from faying.surface.synthesize import spectral
 from faying.units import parse
+from tests.helpers.imperfect import with_missing, with_noise
 from tests.helpers.weierstrass import weierstrass_mandelbrot
 
 G = 1e-9

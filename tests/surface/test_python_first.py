@@ -6,7 +6,8 @@ from matplotlib.figure import Figure
 from scipy.special import ellipe
 
 import faying
-from faying.surface.synthesize import spectral, with_missing
+from faying.surface.synthesize import spectral
+from tests.helpers.imperfect import with_missing
 
 SPACING = 1e-6
 

@@ -13,7 +13,8 @@ from faying.files import end_of
 from faying.surface.files.read import plausible
 from faying.surface.files.write import write_scan
 from faying.surface.scan import Profile
-from faying.surface.synthesize import spectral, with_missing
+from faying.surface.synthesize import spectral
+from tests.helpers.imperfect import with_missing
 
 
 @pytest.fixture

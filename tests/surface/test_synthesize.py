@@ -5,7 +5,7 @@ import pytest
 
 from faying import InputError, Scan
 from faying.surface.scan import Profile
-from faying.surface.synthesize import spectral, with_missing, with_noise
+from faying.surface.synthesize import spectral
 from tests.helpers.weierstrass import weierstrass_mandelbrot
 
 
@@ -96,12 +96,6 @@ def test_shortest_and_longest_waves():
     assert low.max() / low.min() < 5
 
 
-def test_noise_and_missing_points():
-    scan = spectral((100, 100), spacing=1e-6, D=2.4, Rq=1e-6)
-    assert with_missing(scan, share=0.05).missing == 500
-    assert (with_noise(scan, rms=1e-7).heights - scan.heights).std() == pytest.approx(1e-7, rel=0.05)
-
-
 @pytest.mark.parametrize(
     ("change", "match"),
     [
@@ -119,8 +113,3 @@ def test_faulty_requests(change, match):
     given = {"shape": (32, 32), "spacing": 1e-6, "D": 2.4, "Rq": 1e-6} | change
     with pytest.raises(InputError, match=match):
         spectral(given.pop("shape"), **given)
-
-
-def test_faulty_series():
-    with pytest.raises(InputError, match="share of missing points = 1; it must be at least 0 and below 1"):
-        with_missing(spectral((8, 8), spacing=1e-6, D=2.4, Rq=1e-6), share=1.0)

@@ -194,9 +194,8 @@ class _Archive:
             k += 1
             if not solid and self.kinds.get(head[1]) not in {*_SURFACE, *_LEFT_OUT}:
                 raise ReadError(
-                    f"line {k}: EBLOCK without the key SOLID is read for elements of surfaces, contacts and the like "
-                    f"alone, and type {head[1]} is {self.kinds.get(head[1], 'none of them')}; write the archive with "
-                    "CDWRITE,DB"
+                    f"line {k}: EBLOCK without the key SOLID is read for surfaces, contacts and the like, and type "
+                    f"{head[1]} is {self.kinds.get(head[1], 'none of them')}; write the archive with CDWRITE,DB"
                 )
             while len(nodes) < count:
                 nodes += _cut(self.lines[k], width)

@@ -1,18 +1,15 @@
-"""Gaussian surfaces and profiles of known D and G; noise and missing points."""
+"""Gaussian surfaces and profiles of known D and G."""
 
-from math import ceil, cos, pi, sin
-from typing import TypeVar
+from math import cos, pi, sin
 
 import numpy as np
 
-from faying.checks import flag, instance, number, several, shown, whole
+from faying.checks import flag, number, several, shown, whole
 from faying.errors import InputError
 from faying.surface.convention import G_from_Rq, check_dimension, density, prefactor
-from faying.surface.heights import AreaHeights
 from faying.surface.scan import Profile, Scan
 from faying.typing import Array
 
-Map = TypeVar("Map", bound=AreaHeights)
 MAX_POINTS = 2**31  # along a side
 Seed = int | np.random.Generator
 
@@ -133,20 +130,3 @@ def _coloured(power: Array, total: tuple[int, ...], steps: tuple[float, ...], rn
 
     area = float(np.prod(steps))
     return np.asarray(fft.irfftn(fft.rfftn(rng.standard_normal(total)) * np.sqrt(power / area), total))
-
-
-def with_noise(scan: Map, *, rms: float, seed: Seed = 0) -> Map:
-    """Add white Gaussian noise of `rms` [m], or text with a unit, to every known point."""
-    instance(scan, AreaHeights, "scan", "give a Scan, as faying.read_scan returns it")
-    rms, rng = number(rms, "rms", "m", least=0, ends="[)"), _generator_of(seed)
-    return scan.with_heights(scan.heights + rng.normal(0, rms, scan.shape), f"white noise of {rms:.3g} m added")
-
-
-def with_missing(scan: Map, *, share: float, seed: Seed = 0) -> Map:
-    """Make a random `share` (0..1) of the points missing."""
-    instance(scan, AreaHeights, "scan", "give a Scan, as faying.read_scan returns it")
-    share, rng = number(share, "share of missing points", least=0, greatest=1, ends="[)"), _generator_of(seed)
-    count = ceil(share * scan.heights.size - 1e-9)
-    z = scan.heights.ravel().copy()
-    z[rng.choice(z.size, count, replace=False)] = np.nan
-    return scan.with_heights(z.reshape(scan.shape), f"{count} points made missing")

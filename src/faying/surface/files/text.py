@@ -381,8 +381,7 @@ def _grid(path: Path, data: Array, x: float, y: float, z: float) -> Scan:
     cells = ix + nx * iy
     if nx * ny > 4 * len(data) or len(np.unique(cells)) != len(data):
         raise ReadError(
-            f"{path}: {len(data)} points do not fill a grid of {nx} x {ny} once each; the file is cut off or "
-            "damaged, or its columns are not x, y and z"
+            f"{path}: {len(data)} points do not fill a grid of {nx} x {ny} once each; is it cut off, or not x, y and z?"
         )
     # in the order of the file, whichever way it runs: a file that was cut lacks the end of its last row
     row, along, length = (iy, ix, nx) if iy[0] == iy[1] else (ix, iy, ny)
