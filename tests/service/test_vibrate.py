@@ -274,6 +274,16 @@ def test_slopes_are_decibels_an_octave_of_power_and_of_amplitude():
     assert rise.at(np.array([19.0, 161.0])).tolist() == [0.0, 0.0]
 
 
+def test_a_band_beyond_the_modes_that_were_found_is_said(state):
+    last = float(state.frequencies[-1])
+    (within,) = faying.vibration(state, [noise(1e-6, band=(200.0, 0.9 * last))])
+    (beyond,) = faying.vibration(state, [noise(1e-6, band=(200.0, 1.5 * last))])
+    texts = [[note.text for note in one.notes if note.code == "vibration-band"] for one in (within, beyond)]
+    assert texts[0] == []
+    assert f"goes up to {1.5 * last:g} Hz" in texts[1][0]
+    assert "raise modes.count" in texts[1][0]
+
+
 def test_a_table_comes_from_a_file(tmp_path):
     file = tmp_path / "psd.csv"
     file.write_text("frequency [Hz], psd [g^2/Hz]\n20, 0.01\n80, 0.04\n")
