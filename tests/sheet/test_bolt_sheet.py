@@ -240,6 +240,22 @@ def test_scatter_follows_the_way_of_tightening(made):
     assert preload_scatter(uncertain, "bolt", choice)[0] == pytest.approx(0.12, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("lines", "half"),
+    [
+        ({"bolt": {"preload": "6 kN +- 0.3 kN"}}, 0.1),
+        ({"bolt": {"factor": "1 +- 0.03"}}, 0.06),
+        ({"bolt": {"bolt": {"factor": "1 +- 0.02"}}}, 0.04),
+        ({"material": {"E": "200 GPa +- 5 GPa"}}, 0.28),
+    ],
+)
+def test_scatter_of_the_sheet_is_that_of_every_interval(made, lines, half):
+    """Two standard deviations of the force, by a line on it or on a factor; else by default."""
+    study = made(bolt=BOLT | {"preload": "6 kN"}, uncertain=lines)
+    choice = choice_of(study.bolt_sheets, "bolt")
+    assert preload_scatter(study, "bolt", choice)[0] == pytest.approx(half, rel=2e-3)
+
+
 def test_a_bolt_has_its_own_table(made):
     study = made(bolt_sheet=[{"bolt": "bolt", "axial": "1 kN"}, {"clamp": "2 kN"}])
     assert choice_of(study.bolt_sheets, "bolt").axial == (0.0, 1e3)

@@ -56,7 +56,6 @@ class Scatter:
 
 
 TORQUE = TIGHTENING["torque wrench, friction estimated"]
-ELONGATION = TIGHTENING["elongation"]
 
 SCATTER = {
     "scan": Scatter(
@@ -85,7 +84,7 @@ SCATTER = {
         distribution=TORQUE.distribution,
         source=TORQUE.source,
         remedy="tighten by elongation",
-        left=ELONGATION.scatter / TORQUE.scatter,
+        left=TIGHTENING["elongation"].scatter / TORQUE.scatter,
     ),
     "mesh": Scatter(
         source="functions one degree higher on edges and faces of the elements (doi:10.1137/0730048), half of the "
@@ -182,8 +181,7 @@ def with_assumed(
     more: list[Input] = []
     for one in _assumed(study, structure, surfaces):
         number = number_of(one.key)
-        alike = ("factor", "preload") if number.room == "bolt" else (number.name,)
-        owners = {other.owner for other in listed if other.room == number.room and other.name in alike}
+        owners = {other.owner for other in listed if (other.room, other.varies) == (number.room, number.varies)}
         if number.name == "stiffness" and laws_drawn and given.models:
             continue
         if number.owner is None and owners and None not in owners:  # listed for some joints: the others have their own
@@ -221,10 +219,9 @@ def preload_scatter(study: Study, bolt: str, choice: BoltSheetChoice) -> tuple[f
         return (choice.tightening_factor - 1) / (choice.tightening_factor + 1), "from tightening_factor"
     if choice.way is not None:
         return TIGHTENING[choice.way].scatter, f"{choice.way} ({TIGHTENING[choice.way].source})"
-    inputs = () if study.uncertain is None else study.uncertain.inputs
-    for one in inputs:
-        if one.key in (f"bolt.{bolt}.factor", "bolt.factor"):
-            low, high = one.distribution.quantile(np.array([TWO_SIGMA, 1 - TWO_SIGMA]))
-            return float((high - low) / (high + low)), "from [uncertain], two standard deviations each way"
+    index = [one.name for one in study.bolts].index(bolt)
+    low, high = force_factors(stated(study.uncertain), study, index, np.array([TWO_SIGMA, 1 - TWO_SIGMA])).tolist()
+    if high > low:
+        return (high - low) / (high + low), "from [uncertain], two standard deviations each way"
     way = TIGHTENING[DEFAULT_WAY]
     return way.scatter, f"default: {DEFAULT_WAY} ({way.source})"

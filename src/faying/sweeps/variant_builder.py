@@ -73,7 +73,7 @@ class StudyVariant:
         out, numbers = self, [number_of(key) for key in values if key != MODEL]
         if MODEL in values:
             out = replace(self, study=replace(self.study, law=replace(self.study.law, model=values[MODEL])))
-        for number in sorted(numbers, key=lambda one: (one.name == "factor", one.name)):
+        for number in sorted(numbers, key=lambda one: (one.name != one.varies, one.name)):
             named = {one.owner for one in numbers if one.owner and (one.room, one.name) == (number.room, number.name)}
             out = out._with(number, values[number.key], named)
         return out
@@ -223,7 +223,6 @@ class VariantBuilder:
         joint, surface, (rough, other) = point.study.joints[number], point.surfaces[number], self.pairs[number]
         law = point.study.law_of(joint)
         made = self._made.get((number, law, surface), lambda: MadeLaw(law.make(surface, rough, other)))
-
         return joint.laid(made.chosen, rough.nu, lambda law: self._laid.get((made, law), lambda: law))
 
     def variant(self, index: int, gaps: Sequence[Array], start: Array | None = None) -> Gapped:

@@ -171,9 +171,8 @@ def _twice(numbers: Sequence[Varied], known: Known) -> Iterator[str]:
     for (room, name, owner), key in by_place.items():
         own = [by_place.get((room, name, each), "") for each in names.get(room, ())] if owner is None else []
         others = own if own and all(own) else []
-        if (room, name) == ("bolt", "preload"):
-            whose = [owner, None] if owner else [None, *known.bolts]
-            others = [*others, *(by_place[at] for each in whose if (at := (room, "factor", each)) in by_place)]
+        alike = [one for one in numbers if (one.room, one.varies) == (room, name) != (room, one.name)]  # factors on it
+        others = [*others, *(one.key for one in alike if None in (owner, one.owner) or one.owner == owner)]
         if others:
             yield f"uncertain: {key} scatters already by {', '.join(others)}; leave one of them out"
 

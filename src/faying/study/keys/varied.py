@@ -83,6 +83,11 @@ class Varied:
         return ".".join(filter(None, (self.room, self.owner, self.name)))
 
     @property
+    def varies(self) -> str:
+        """The name of what it changes: a factor on the preload of a bolt changes that."""
+        return "preload" if (self.room, self.name) == ("bolt", "factor") else self.name
+
+    @property
     def of_form(self) -> bool:
         """Whether it changes the form of faces, so that other points of a joint touch."""
         return self.room == "joint" and self.name.startswith("form.")
