@@ -15,6 +15,7 @@ from peers.rows import Problem, Row, worst
 from tests.helpers.self_affine import self_affine
 
 ROOT = Path(__file__).parents[2]
+CURVE = ("Sk", "Spk", "Svk", "Smr1", "Smr2", "Sxp", "Vmp", "Vmc", "Vvc", "Vvv", "Sal", "Str")
 SOLVERS = {"Tamaas": "tamaas", "ContactMechanics": "contactmechanics"}
 
 
@@ -64,13 +65,15 @@ def heights(code, python):
     lengths = {"Sq": one.Sq, "Sa": one.Sa, "Sz": one.Sz, "Sq of the slope": sloped.Sq}
     ours = {name: value * 1e6 for name, value in lengths.items()}
     ours |= {"Ssk": one.Ssk, "Sku": one.Sku, "Sdq": one.Sdq, "Sdr": one.Sdr}
+    areal = vars(Scan(heights=z, spacing=(1e-6, 1e-6)).areal())
+    ours |= {name: value * (1 if name in ("Smr1", "Smr2", "Str") else 1e6) for name, value in areal.items()}
     return [
         Row(
             quantity=name,
             ours=ours[name],
             theirs=float(value),
-            unit="um" if name in lengths else "",
-            bound=1 / n if (code, name) == ("surfacetopography", "Sdq") else 1e-9,
+            unit="" if name in ("Ssk", "Sku", "Sdq", "Sdr", "Smr1", "Smr2", "Str") else "um",
+            bound=1 / n if (code, name) == ("surfacetopography", "Sdq") else 2e-3 if name in CURVE else 1e-9,
         )
         for name, value in theirs.items()
     ]
@@ -151,7 +154,7 @@ PROBLEMS = [
         )
         for peer, more in (
             ("SurfaceTopography", " Its gradient halves the weight of the edges, of 2 rows in 256: 1/256 for Sdq."),
-            ("surfalize", ""),
+            ("surfalize", " Its bearing curve has 10,000 heights, its autocorrelation no point between: 2e-3."),
         )
     ),
     Problem(

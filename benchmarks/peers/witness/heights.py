@@ -16,7 +16,10 @@ def surfalize(heights, sloped, spacing):
     one = Surface(heights, spacing, spacing)
     found = {name: getattr(one, name)() for name in ("Sq", "Sa", "Sz", "Ssk", "Sku", "Sdq")}
     level = Surface(sloped, spacing, spacing).level()
-    return found | {"Sdr": one.Sdr() / 100, "Sq of the slope": level.Sq()}
+    found |= {name: getattr(one, name)() for name in ("Sp", "Sv", "Sk", "Spk", "Svk", "Sxp", "Sal", "Str")}
+    found |= {name: getattr(one, name)() for name in ("Vmp", "Vmc", "Vvc", "Vvv")}
+    found |= {name: getattr(one, name)() / 100 for name in ("Smr1", "Smr2", "Sdr")}
+    return found | {"Sq of the slope": level.Sq()}
 
 
 def surfacetopography(heights, sloped, spacing):

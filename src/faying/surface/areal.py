@@ -10,7 +10,7 @@ from faying.surface.form import Prepared
 from faying.typing import Array
 from faying.units import show
 
-CORE = 0.4  # share of the area under the secant of the core (ISO 25178-2, clause on Sk)
+CORE = 0.4  # share of the area under the flattest secant, which finds the core (ISO 25178-2, clause on Sk)
 PEAK, VALLEY = 0.1, 0.8  # material ratios that part peaks, core and valleys in the volumes (the standard's defaults)
 EXTREME, MIDDLE = 0.025, 0.5  # material ratios of Sxp (the standard's defaults)
 DECAY = 0.2  # of the autocorrelation, at which Sal and Str are read (the standard's default)
@@ -81,9 +81,9 @@ def _bearing(falling: Array) -> dict[str, float]:
     drops = falling[: n - width] - falling[width:]
     # of secants that are equally flat the middle one
     start = int(np.median(np.flatnonzero(drops <= drops.min() * (1 + 1e-12))))
-    core = float(drops[start]) * n / width
-    top = float(falling[start] + core * ratio[start])
-    bottom = top - core
+    core = slice(start, start + width + 1)  # ISO 13565-2, 4.2: the line of least squares through it
+    slope, top = np.polyfit(ratio[core], falling[core], 1).tolist()
+    bottom = top + slope
     above, below = np.maximum(falling - top, 0.0), np.maximum(bottom - falling, 0.0)
     peaks, valleys = float(np.mean(falling > top)), float(np.mean(falling < bottom))
 
@@ -94,7 +94,7 @@ def _bearing(falling: Array) -> dict[str, float]:
     return {
         "Sp": float(falling[0]),
         "Sv": float(-falling[-1]),
-        "Sk": core,
+        "Sk": -slope,
         "Spk": 2 * float(above.mean()) / peaks if peaks else 0.0,  # a triangle of the same area
         "Svk": 2 * float(below.mean()) / valleys if valleys else 0.0,
         "Smr1": peaks,
