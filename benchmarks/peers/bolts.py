@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from faying.bolt.fatigue import FatigueCurve, dirlik, narrow_band
+from faying.bolt.fatigue import DETAIL, FatigueCurve, dirlik, narrow_band
 from faying.bolt.threads import Thread
 from faying.bolt.vdi2230 import bolt_sections
 from peers.peer import ask
@@ -55,6 +55,15 @@ def fatigue(python):
     return [worst(names[key], ours[key], theirs[key], bound=1e-9, unit="1/s") for key in names]
 
 
+def spectrum(python):
+    """A spectrum on both sides of the knee, on bolts up to 30 mm."""
+    diameters = np.array([12e-3, 20e-3, 30e-3])
+    ranges, cycles = np.linspace(5e6, 120e6, 24), np.geomspace(1e8, 1e3, 24)
+    theirs = ask(python, "bolt_curve.py", diameters=diameters, detail=DETAIL, ranges=ranges, cycles=cycles)
+    ours = [FatigueCurve.iec(d).damage(ranges / 2, cycles) for d in diameters]
+    return [worst("damage of 24 ranges, M12 to M30, number", ours, theirs["damage"], bound=1e-12, unit="")]
+
+
 PROBLEMS = [
     Problem(
         name="metric bolts",
@@ -63,6 +72,14 @@ PROBLEMS = [
         bound="The same formulas of ISO 898-1 and VDI 2230; Faying has their printed factors 0.64952 and 1.22687, "
         "which are 5e-6 of the pitch off at most, or 1e-6 of the diameter and 2e-6 of its square; twice that.",
         solve=bolts,
+    ),
+    Problem(
+        name="bolts in tension, IEC 61400-6",
+        peer="pyFlange",
+        seconds=2,
+        bound="The same two slopes and knee, of detail category 36 without a partial factor: rounding. Beyond 30 mm "
+        "pyFlange follows the amendment of the standard, (30 mm/d)^0.1, and Faying its first edition, (30 mm/d)^0.25.",
+        solve=spectrum,
     ),
     Problem(
         name="random stress",
