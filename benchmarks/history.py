@@ -1,20 +1,16 @@
 """What joints remember: the tables of docs/theory/history.md, and what a history costs.
 
-    python benchmarks/history.py [faces] [places] [t-specimen] [cost] [assemblies]
+    python benchmarks/history.py [faces] [places] [t-specimen] [cost]
 
 - faces: k_n after 40 MPa over k_n on first loading, of four kinds of faces, eight draws each (six CPU minutes).
 - places: k_n of flattened faces over that of fresh ones, at twelve offsets.
 - t-specimen: frequencies at 4, 12, 4 kN, and the change from 4 to 12 kN under both states beside the hammer test.
 - cost: CPU seconds of six preloads that fall and rise over those of the same six as they rise, in one process.
-- assemblies: scatter of frequencies of a box with ten bolts and of two lapped plates, each put together 32 times by one
-  person: the table of docs/intervals.md (an hour).
 
-All of them where none is named.
+All four where none is named.
 """
 
-import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 from types import SimpleNamespace
@@ -23,9 +19,7 @@ import numpy as np
 
 import faying
 from faying.contact.models.half_space import HalfSpace
-from faying.geometry.cad import write_step
 from faying.halfspace.solve import solve_half_space
-from faying.identify.assemblies import SOURCES
 from faying.study import Study
 from faying.surface.synthesize import spectral
 
@@ -130,41 +124,9 @@ def cost() -> None:
         print(f"{name}: {used['history'] / used['rising']:.2f}", flush=True)
 
 
-def box(folder: Path) -> Study:
-    """A lid of 8 mm on a box of 150 x 100 x 40 mm with walls of 16 mm and a floor of 8 mm, ten M6 through both."""
-    from netgen import occ
-
-    lid = occ.Box(occ.Pnt(0, 0, 40), occ.Pnt(150, 100, 48))
-    walls = occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(150, 100, 40)) - occ.Box(occ.Pnt(16, 16, 8), occ.Pnt(134, 84, 40))
-    for x, y in [(x, y) for x in (8, 53, 97, 142) for y in (8, 92)] + [(8, 50), (142, 50)]:
-        hole = occ.Cylinder(occ.Pnt(x, y, -1), occ.Z, r=3.3, h=60)
-        lid, walls = lid - hole, walls - hole
-    lid.name, walls.name = "lid", "walls"
-    write_step(folder / "box.step", [lid, walls])
-    scan = ROOT / "examples" / "t-specimen" / "milled.x3p"
-    new = ["new", folder / "box.step", "--scan", scan, "--out", folder / "box.toml", "--yes"]
-    subprocess.run([sys.executable, "-m", "faying", *map(str, new)], check=True, capture_output=True)
-    return Study.read(folder / "box.toml")
-
-
-def assemblies() -> None:
-    """Print standard deviations of ln f between assemblies [%], least and greatest of the modes."""
-    print("sd [%] over the modes: " + ", ".join((*SOURCES, "all")) + ", part of the interval [%]")
-    with tempfile.TemporaryDirectory() as folder:
-        lapped = Study.read(ROOT / "examples" / "plates-and-bolts" / "plates.toml")
-        rough = {"joint.form": {"waviness": {"Wq": "5 um"}}, "uncertain": {"preload": {"tightening": "feel"}}}
-        cases = {"box, 6 kN": with_all(box(Path(folder)), {"bolt.preload": "6 kN"})}
-        cases["box, 2 kN by feel, waves of 5 um"] = with_all(cases["box, 6 kN"], {"bolt.preload": "2 kN"} | rough)
-        cases["plates, 8 kN"] = lapped.with_("bolt.preload", "8 kN")
-        for name, study in cases.items():
-            found = faying.predict(study.with_("modes.levels", []), assemblies=32)
-            rows = 100 * np.concatenate([found.deviation_alone[:, 0], found.deviation, 100 * found.part_of_interval])
-            print(f"{name}: " + ", ".join(f"{row.min():.2g} to {row.max():.2g}" for row in rows), flush=True)
-
-
 def main() -> None:
     """Print what is asked for."""
-    every = {"faces": faces, "places": places, "t-specimen": t_specimen, "cost": cost, "assemblies": assemblies}
+    every = {"faces": faces, "places": places, "t-specimen": t_specimen, "cost": cost}
     for name in sys.argv[1:] or every:
         every[name]()
 
