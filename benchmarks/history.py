@@ -29,6 +29,7 @@ PAIR = faying.ContactPair(STEEL, STEEL)
 SIDE, POINTS, LONGEST = 1e-3, 256, 0.25e-3
 FACES = ((0.8, 0.3e-6), (0.5, 0.5e-6), (0.8, 1e-6), (0.8, 3e-6))  # Hurst exponent, rms of each face [m]
 CARRIED, PRESSURES = 40e6, np.array([30e6, 20e6, 10e6, 5e6, 2e6])
+GIVEN = {"E_star": PAIR.E_star, "hardness": STEEL.hardness, "tol": 1e-6}
 DRAWS, OFFSETS = 8, 12
 PLAIN = {"modes.intervals": False, "modes.levels": []}
 
@@ -50,8 +51,7 @@ def faces() -> None:
             law = HalfSpace(scan=SimpleNamespace(heights=heights, spacing=(SIDE / POINTS,) * 2), pair=PAIR, tol=1e-6)
             first = np.array([law.contact_at(float(p)).normal_stiffness(loading=False) for p in PRESSURES])
             flat = law.contact_at(CARRIED).flattened
-            given = {"E_star": PAIR.E_star, "hardness": STEEL.hardness, "tol": 1e-6}
-            again = [solve_half_space(flat, SIDE / POINTS, pressure=float(p), **given) for p in PRESSURES]
+            again = [solve_half_space(flat, SIDE / POINTS, pressure=float(p), **GIVEN) for p in PRESSURES]
             ratios.append(np.array([one.normal_stiffness(loading=False) for one in again]) / first)
         every = np.array(ratios)
         numbers = zip(every.mean(axis=0), every.min(axis=0), every.max(axis=0), strict=True)
@@ -68,8 +68,7 @@ def places() -> None:
         for carried, pressure in ((40e6, 10e6), (400e6, 200e6)):
 
             def solved(heights: np.ndarray, p: float):
-                given = {"E_star": PAIR.E_star, "hardness": STEEL.hardness, "tol": 1e-6}
-                return solve_half_space(heights, SIDE / points, pressure=p, **given)
+                return solve_half_space(heights, SIDE / points, pressure=p, **GIVEN)
 
             top = solved(first + second, carried)
             lost = (top.heights - top.flattened) / 2  # of each face

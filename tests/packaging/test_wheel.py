@@ -48,8 +48,8 @@ def test_what_the_readme_types_works_from_the_wheel(installed, tmp_path):
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     typed = re.findall(r"^(?:pip install uv && )?uv run (?:--extra \w+ )*faying (.*)$", text, re.M)
     assert len(typed) > 4
-    for words in typed:
-        called(installed / "faying", *shlex.split(words), cwd=tmp_path)
+    said = {words: called(installed / "faying", *shlex.split(words), cwd=tmp_path) for words in typed}
+    assert "Two blocks and a bolt" in said["run study.toml"]
     assert {"result.nc", "report.html"} <= {path.name for path in (tmp_path / "results").iterdir()}
     (script,) = re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
     assert "k_n 17.6 MPa/um" in called(installed / "python", "-c", script, cwd=tmp_path)

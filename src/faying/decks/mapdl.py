@@ -17,7 +17,7 @@ import numpy as np
 
 from faying.decks.deck import CondensedDeck, JointDeck, comments, grouped, members, real, reals
 from faying.decks.raw import Pretension, RawMesh, gathered, index, joined, not_in_file, ranged, undoubled
-from faying.decks.vocabulary import ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, CONTACT, left_out
+from faying.decks.vocabulary import ANSYS_CONTACT, ANSYS_LEFT_OUT, ANSYS_SURFACES, BOLT, CONSTRAINT, CONTACT, left_out
 from faying.errors import ReadError
 from faying.typing import Array, Index
 
@@ -186,16 +186,15 @@ class _Archive:
         """Solids of an EBLOCK, and nodes of what is left out; without the key SOLID nothing but such."""
         solid = len(words) > 2 and words[2].upper() == "SOLID"
         width = _width(self.lines[k + 1])
-        begin, found = k, 0
-        k += 2
+        begin, found, k = k, 0, k + 2
         while (head := _cut(self.lines[k], width))[0] != -1:
             found += 1
             count, number, nodes = (head[8], head[10], head[11:]) if solid else (len(head) - 5, head[0], head[5:])
-            k += 1
-            if not solid and self.kinds.get(head[1]) not in {*_SURFACE, *_LEFT_OUT}:
+            k, kind = k + 1, self.kinds.get(head[1], "none of them")
+            if not (solid or kind in _SURFACE or kind in _LEFT_OUT):
                 raise ReadError(
                     f"line {k}: EBLOCK without the key SOLID is read for surfaces, contacts and the like, and type "
-                    f"{head[1]} is {self.kinds.get(head[1], 'none of them')}; write the archive with CDWRITE,DB"
+                    f"{head[1]} is {kind}; write the archive with CDWRITE,DB"
                 )
             while len(nodes) < count:
                 nodes += _cut(self.lines[k], width)
@@ -255,7 +254,7 @@ def _left_out(elements: list[str], commands: list[str]) -> list[str]:
         notes.append(f"nodes and elements of the commands {', '.join(made)}, outside the blocks, are not read")
     bolts = [name for name in commands if name in ("PSMESH", "SLOAD")]
     rest = [name for name in commands if name not in (*bolts, *made)]
-    touching = [f"CONTA{kind}" for kind in elements if kind in ("171", "172", "173", "174", "175", "176")]
+    touching = [f"CONTA{kind}" for kind in elements if kind in map(str, ANSYS_CONTACT)]
     return notes + left_out({BOLT: bolts, CONSTRAINT: rest, CONTACT: touching}, "")
 
 

@@ -72,7 +72,8 @@ ANSYS_LEFT_OUT = {
     179: "pretension of bolts",
 }
 # surfaces on solids: contact, loads and meshing aids, which hold neither stiffness nor mass
-ANSYS_SURFACES = (151, 152, 153, 154, 155, 156, 169, 170, 171, 172, 173, 174, 175, 176, 200, 201)
+ANSYS_CONTACT = (171, 172, 173, 174, 175, 176)  # on surfaces, as the next, which have no stiffness of their own
+ANSYS_SURFACES = (151, 152, 153, 154, 155, 156, 169, 170, *ANSYS_CONTACT, 200, 201)
 
 
 def listed(text: str) -> frozenset[str]:
