@@ -12,30 +12,6 @@ TITLES: dict[Severity, str] = {
     "remark": "what was read and assumed",
 }
 INCOMPLETE = "interval-incomplete"  # the code of a note on what an interval lacks
-# every note is declared here: what its code means for the result
-DECLARED: dict[Severity, str] = {
-    "wrong": f"""
-        {INCOMPLETE} open not-converged beyond-law-matters bolt-yield seat-yield joint-yield beyond-proof rigid
-        distorted-elements reference-points bases law-materials odd-material no-answer load-opens bolt-loose
-        vibration-beyond
-    """,
-    "limit": """
-        outside-validity beyond-law level-damping no-level-answer vibration-band no-level-damping window falls
-        far-from-exact law-off law-not-compared slight-preload near-proof size waves-assumed bonded-by-ties viscous
-        seat-beyond-face
-        uncertain-cut interval mesh-error few-samples surrogate-wide surrogate-rough stiff-elements backbone-ends
-        backbone-bound model-modes test-modes part-mass left-out not-mixed loads-stick load-yields load-intervals
-    """,
-    "remark": """
-        alternative assembly-left-out assembly-order assumed backbone-no-slip backbone-no-witness backbone-rest
-        backbone-witness beyond bolt bolt-numbers bolt-pitch bolt-seat bolt-thread bonded dowel-mesh
-        end-of-prior evidence faces-without-triangles file file-end law-choice load-cases load-slides mates mesh-refined
-        mesh-unknown modes-couple modes-cross more-parameters-than-data nameless-parts no-loss no-memory
-        no-waves not-told numbered-parts one-body part-test response-residual shared-names snapped straightened surface
-        toml uncertain undivided vibration-alone vibration-jumps waves waves-mesh
-    """,
-}
-CODES = {kind: frozenset(text.split()) for kind, text in DECLARED.items()}
 NUMBER = re.compile(r"(?<![\w.])\d+(?:,\d{3})*(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")
 MAX_NAMES = 3  # of joints in one note
 FIRST_NOTES = 3  # that stand before the tables
@@ -51,6 +27,7 @@ class Note:
     Args:
         code: what kind of note it is, a word that never changes, such as "beyond-law".
         text: the sentence for people.
+        severity: whether the result may be wrong, is limited, or is only described; the same for all notes of a code.
         joint: the joint that it is about; "" for the whole structure.
         load: the preload of the first bolt [N] at which it holds; None for all.
         share: the share of the joint that it concerns [-], of its area or of its stiffness as the text says; None where
@@ -59,17 +36,13 @@ class Note:
 
     code: str
     text: str
+    severity: Severity = "remark"
     joint: str = ""
     load: float | None = None
     share: float | None = None
 
     def __str__(self) -> str:
         return self.text
-
-    @property
-    def severity(self) -> Severity:
-        """Whether the result may be wrong, is limited, or is only described."""
-        return next((kind for kind, codes in CODES.items() if self.code in codes), "remark")
 
 
 def percent(share: float) -> str:

@@ -78,7 +78,8 @@ def test_the_table_has_a_row_for_each_mode(found):
 
 def test_the_terminal_says_no_note_twice_and_three_first(found):
     more = tuple(
-        Note(code="window", text=f"joint: {word} of the scan") for word in ("half", "quarter", "third", "fifth")
+        Note(code="window", severity="limit", text=f"joint: {word} of the scan")
+        for word in ("half", "quarter", "third", "fifth")
     )
     lines = text(replace(found, notes=(*found.notes, *more))).splitlines()
     said = [line for line in lines if line.startswith("- ")]

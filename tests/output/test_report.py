@@ -140,7 +140,7 @@ def test_the_terminal_has_the_answer_on_one_screen():
     from faying.cli.run import text
 
     found = rich()
-    notes = tuple(Note(code="window", text=f"{k}: {'x ' * 90}") for k in range(9))
+    notes = tuple(Note(code="window", severity="limit", text=f"{k}: {'x ' * 90}") for k in range(9))
     many = replace(found, notes=notes)
     short, full = (text(many, everything=everything).splitlines() for everything in (False, True))
     assert len(short) <= 40

@@ -37,7 +37,7 @@ def falling(case: Case, states: Sequence[LoadedCase]) -> Iterator[Note]:
             f"{load_text(after.load)}, by up to {-100 * change.min():.2g} %: as the parts bend under the "
             f"bolts, pressure falls on {percent(less)} of the joint{opened}, while it grows elsewhere"
         )
-        yield Note(code="falls", load=after.load, text=text)
+        yield Note(code="falls", severity="limit", load=after.load, text=text)
 
 
 def against_exact_contact(case: Case, state: LoadedCase) -> Iterator[Note]:
@@ -69,7 +69,7 @@ def against_exact_contact(case: Case, state: LoadedCase) -> Iterator[Note]:
                 ratio = stiffness_at(law, mean) / stiffness_at(exact, mean)
                 if not 1 / NOTED_RATIO <= ratio <= NOTED_RATIO:
                     text = f"{at}: k_n of {law.name} is {ratio:.2g} times that of the half-space contact of its scan"
-                    yield Note(code="far-from-exact", joint=joint.name, text=text)
+                    yield Note(code="far-from-exact", severity="limit", joint=joint.name, text=text)
             given = chosen.given if chosen.kind.label == law.name else {}
             found = stability(mates, model=law.name, given=given, pressure=mean)
         except FayingError:
@@ -81,4 +81,4 @@ def against_exact_contact(case: Case, state: LoadedCase) -> Iterator[Note]:
                 f"{at}: {law.name} has {factor:.2g} times the k_n on the {name} of the scan, compared with all of it; "
                 f"{remedy} shows which one is right"
             )
-            yield Note(code="window", joint=joint.name, text=text)
+            yield Note(code="window", severity="limit", joint=joint.name, text=text)

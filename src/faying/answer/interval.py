@@ -123,7 +123,7 @@ class Draws:
             f"machined faces have waves, and {DRAWS} draws of waves with a gap of {show(ASSUMED_GAP, 'm')} rms say how "
             "far that moves each frequency. Give [joint.form] a measured map, waviness, or flat = true"
         )
-        return [Note(code="waves-assumed", text=text)]
+        return [Note(code="waves-assumed", severity="limit", text=text)]
 
 
 def _wavy(case: Case, known: Known) -> list[_Wavy | None]:
@@ -182,7 +182,11 @@ def intervals(
             f"the intervals do not contain law, k_t/k_n, {'preload ' * (len(case.loads) == 1)}and waves, which are "
             "found for bolts pulled at once, springs per area and hysteretic damping"
         )
-        lost = [Note(code=INCOMPLETE, text=text), *law_notes(case, known)] if case.structure.joints else []
+        lost = (
+            [Note(code=INCOMPLETE, severity="wrong", text=text), *law_notes(case, known)]
+            if case.structure.joints
+            else []
+        )
         return None, _combined(case, known, states, mesh, parts, Joints()), [*lost, *of_parts]
     draws = Draws.of(case, known)
     plain = ChangedCase.nothing(case)
@@ -239,7 +243,11 @@ def _incomplete(found: Mapping[str, Sequence[Found]]) -> Iterator[Note]:
         faults = [one for one in some if isinstance(one, NotConverged)]
         if faults:
             what = f"{len(faults)} of {len(some)} {name}" if len(some) > 2 else name
-            yield Note(code=INCOMPLETE, text=f"the intervals do not contain {what}, which found no answer: {faults[0]}")
+            yield Note(
+                code=INCOMPLETE,
+                severity="wrong",
+                text=f"the intervals do not contain {what}, which found no answer: {faults[0]}",
+            )
 
 
 def of_each(case: Case, known: Known, name: str) -> list[tuple[float, ...] | None]:
@@ -269,14 +277,14 @@ def law_notes(case: Case, known: Known) -> Iterator[Note]:
             f"{', '.join(names)}: {name} was not compared with measurements, so that the intervals do not contain how "
             "far the law is off; state joint.stiffness under [uncertain], or take a law that was compared"
         )
-        yield Note(code="law-not-compared", joint=names[0] if len(names) == 1 else "", text=text)
+        yield Note(code="law-not-compared", severity="limit", joint=names[0] if len(names) == 1 else "", text=text)
     for (name, (low, middle, high)), names in found.items():
         text = (
             f"{', '.join(names)}: measured joints of such metals have {middle:.2g} times the stiffness of {name} in "
             f"the median, {low:.2g} to {high:.2g} times from 5 to 95 %; the intervals contain this, the frequencies do "
             "not"
         )
-        yield Note(code="law-off", joint=names[0] if len(names) == 1 else "", text=text)
+        yield Note(code="law-off", severity="limit", joint=names[0] if len(names) == 1 else "", text=text)
 
 
 def _combined(

@@ -392,13 +392,13 @@ def _closing_notes(study: Study, rigid: Array, first: float) -> Iterator[Note]:
             f"a rigid-body motion is at {rigid.max():.2g} Hz instead of 0: rounding has cost the frequencies "
             "digits, most those near it; look for parts or springs far stiffer than the rest"
         )
-        yield Note(code="rigid", text=text)
+        yield Note(code="rigid", severity="wrong", text=text)
     if study.modes.damping == "viscous":
         text = (
             "the dampers are those of the JK paper, c = eta sqrt(M k) point by point: their sum grows with the square "
             "root of the number of points, so loss factors depend on the mesh"
         )
-        yield Note(code="viscous", text=text)
+        yield Note(code="viscous", severity="limit", text=text)
 
 
 def _sources(case: Case) -> tuple[str, ...]:

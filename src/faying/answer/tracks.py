@@ -82,10 +82,10 @@ def _unmatched(pairs: Paired, measured: Array, threshold: float) -> Iterator[Not
             f"test mode {which}: no computed mode that moves at the points of the test is within 30 % of it; it is "
             "left out. Raise modes.count, or look whether the test has a mode of something else"
         )
-        yield Note(code="test-modes", text=text)
+        yield Note(code="test-modes", severity="limit", text=text)
     inside = (frequencies[0] > 0.97 * measured.min()) & (frequencies[0] < 1.03 * measured.max())
     rest = [k for k in np.flatnonzero(inside & (visibility.max(axis=0) >= threshold)) if k not in found]
     if rest:
         which = ", ".join(f"{k + 1} ({frequencies[0, k]:.1f} Hz)" for k in rest)
         text = f"computed mode {which} moves at the points of the test, which lists none for it"
-        yield Note(code="model-modes", text=text)
+        yield Note(code="model-modes", severity="limit", text=text)

@@ -196,7 +196,7 @@ def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: QuasiStaticCheck 
     out += pressure_notes(case.structure, preload.pressures, load)
     if line.code != "amplitude":
         end = f"the curve ends at {line.points[-1].level:.3g} m/s2 of {curve.choice.amplitude[1]:.3g}: {line.reason}"
-        out.append(Note(code="backbone-ends", load=load, text=end))
+        out.append(Note(code="backbone-ends", severity="limit", load=load, text=end))
     if witness is None:
         text = "the static cycle finds no equilibrium, so that the curve has no static comparison"
         out.append(Note(code="backbone-no-witness", load=load, text=text))
@@ -209,7 +209,7 @@ def _notes(curve: BackboneCurve, bounds: ErrorBounds, witness: QuasiStaticCheck 
     ):
         if abs(value) > NOTED:
             text = f"at {bounds.acceleration:.4g} m/s2 {what} change the joints' damping by {value:+.0%}"
-            out.append(Note(code="backbone-bound", load=load, text=text))
+            out.append(Note(code="backbone-bound", severity="limit", load=load, text=text))
     if line.points[-1].damping <= NOTHING:
         text = (
             f"up to {line.points[-1].level:.3g} m/s2 slip damps mode {curve.choice.mode} by less than {NOTHING:g} of "

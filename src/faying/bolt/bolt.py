@@ -480,7 +480,7 @@ class BoltPlace:
             text = f"bolt {bolt.name!r} has no seat: it presses a ring of {ring}, from its hole and its size"
             notes.append(Note(code="bolt-seat", text=text))
         wide = [f"bolt {bolt.name!r}: {seat.overhang}" for seat in self.pressed if seat.overhang]
-        notes += [Note(code="seat-beyond-face", text=text) for text in wide]
+        notes += [Note(code="seat-beyond-face", severity="limit", text=text) for text in wide]
         if self.thread is not None and bolt.engaged is None:
             length = show(self.thread.high, "m", digits=3)
             text = f"bolt {bolt.name!r}: its thread engages {length} of its tapped hole; engaged gives another length"

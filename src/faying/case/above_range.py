@@ -101,7 +101,7 @@ def _notes(
             f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends with this surface; stiffness stays "
             f"constant there; bonding these points instead {effect}"
         )
-        yield Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text)
+        yield Note(code="beyond-law", severity="limit", joint=joint.name, load=load, share=share, text=text)
         strong = np.flatnonzero(np.abs(change) > MATTERS)
         if len(strong):
             which = f"mode{'s' * (len(strong) > 1)} {', '.join(str(k + 1) for k in strong)}"
@@ -110,7 +110,7 @@ def _notes(
                 f"or bonded there, the frequencies differ by up to {np.abs(change).max():.1%}; take both as bounds. "
                 f"{_others(case, number, float(s.pressure.max()))}"
             )
-            yield Note(code="beyond-law-matters", joint=joint.name, load=load, share=share, text=text)
+            yield Note(code="beyond-law-matters", severity="wrong", joint=joint.name, load=load, share=share, text=text)
 
 
 def _others(case: Case, number: int, pressure: float) -> str:

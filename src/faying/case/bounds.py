@@ -50,7 +50,7 @@ def _bonded(case: Case) -> tuple[Array, list[Note]]:
         )
         K, M = structure.dynamic_matrices
         tied = modes_with(case.modal, K + structure.tied(), M, rigid=structure.rigid)
-        return tied.frequencies[_elastic(case)], [Note(code="bonded-by-ties", text=text)]
+        return tied.frequencies[_elastic(case)], [Note(code="bonded-by-ties", severity="limit", text=text)]
     if len(structure.fixed) or isinstance(structure.solver(case.study.modes.solver), PartByPart):
         return _extrapolated(case), []
     return _merged(case, merge), []

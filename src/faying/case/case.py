@@ -106,7 +106,7 @@ class Case:
                 f"the structure measures {size:.4g} m from corner to corner; if it should not, the unit of its "
                 "geometry is wrong"
             )
-            notes.append(Note(code="size", text=text))
+            notes.append(Note(code="size", severity="limit", text=text))
         notes += (*law_reasons(structure, surfaces), *structure.notes)
         notes += (*material_notes(structure), *bolt_notes(structure, study.bolt_forces))
         return cls(

@@ -138,7 +138,7 @@ def level_notes(case: Case, found: Sequence[Levels | None]) -> list[Note]:
     if not found or not case.study.modes.levels or not case.structure.joints:
         return []
     if any(one is None for one in found):
-        return [Note(code="no-level-damping", text=_why_none(case))]
+        return [Note(code="no-level-damping", severity="limit", text=_why_none(case))]
     notes = _unanswered(case, [one for one in found if one is not None])
     rest = assumes_rest(case.structure, case.study.parts_loss)
     words = assumed_words(friction=assumes_friction(case.structure), rest=rest)
@@ -146,7 +146,7 @@ def level_notes(case: Case, found: Sequence[Levels | None]) -> list[Note]:
         return notes
     assumed = " and ".join(words) + ", as bolted structures have it" * rest
     text = f"damping at levels of acceleration assumes {assumed}; a ring-down of the structure narrows it most"
-    return [*notes, Note(code="level-damping", text=text)]
+    return [*notes, Note(code="level-damping", severity="limit", text=text)]
 
 
 def _unanswered(case: Case, found: Sequence[Levels]) -> list[Note]:
@@ -160,4 +160,4 @@ def _unanswered(case: Case, found: Sequence[Levels]) -> list[Note]:
         "joints slide there as a whole, or open at their edges; ask for smaller levels, pull harder, or follow one "
         "mode by harmonic balance (faying backbone)"
     )
-    return [Note(code="no-level-answer", text=text)]
+    return [Note(code="no-level-answer", severity="limit", text=text)]

@@ -141,7 +141,7 @@ def mesh_notes(study: Study, found: MeshError | None) -> list[Note]:
             f'geometry.size = "{show(smaller, "m", digits=2)}" and face sizes {smaller / geometry.size:.2g} times '
             f"theirs, or faying run --refine {100 * MESH_NOTED:g}%, bring it below {100 * MESH_NOTED:g} %"
         )
-    return [Note(code="mesh-error", text=text)]
+    return [Note(code="mesh-error", severity="limit", text=text)]
 
 
 def size_for(size: float, error: float, tolerance: float) -> float:

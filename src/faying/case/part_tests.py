@@ -249,13 +249,15 @@ class KnownParts:
             yield Note(code="part-test", text=text)
             look = "look at its geometry, material and units"
             if abs(one.mean[1]) > FARTHEST * DENSITY_SD:
-                yield Note(code="part-mass", text=f"part {name!r} weighs {mass:.3g} times its model; {look}")
+                yield Note(
+                    code="part-mass", severity="limit", text=f"part {name!r} weighs {mass:.3g} times its model; {look}"
+                )
             if one.count < (measured := len(part.measured)):
                 text = (
                     f"part {name!r}: the model has {one.count} of its {measured} measured modes; the others are left "
                     f"out. Give free modes of the part alone; else {look}"
                 )
-                yield Note(code="test-modes", text=text)
+                yield Note(code="test-modes", severity="limit", text=text)
 
 
 def _added(prior: Array, variance: Any) -> Array:

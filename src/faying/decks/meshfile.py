@@ -18,7 +18,7 @@ from faying.fe.sides import Blocks, nodes_of, side_key, skin
 from faying.fe.solids import least_jacobian
 from faying.file_kinds import STEP, taken
 from faying.misuse import checked_call
-from faying.notes import Note
+from faying.notes import Note, Severity
 from faying.text import few
 from faying.typing import Array, Index
 
@@ -176,8 +176,8 @@ class _Builder:
         faces, face_part = self._faces(numbers, cells, blocks)
         return self._split(points, blocks, faces, face_part)
 
-    def _note(self, code: str, text: str) -> None:
-        self.notes.append(Note(code=code, text=text))
+    def _note(self, code: str, text: str, severity: Severity = "remark") -> None:
+        self.notes.append(Note(code=code, severity=severity, text=text))
 
     def _index(self, numbers: Index, what: str) -> Index:
         """Places of nodes by number."""
@@ -233,12 +233,14 @@ class _Builder:
         if len(loose) > len(lost):
             text = f"{len(loose) - len(lost)} reference points are left out, with the couplings that name them: "
             text += few(loose[np.isin(loose, points_of_reference)])
-            self._note("reference-points", text)
+            self._note("reference-points", text, "wrong")
         if len(lost):
-            self._note("left-out", f"{len(lost)} nodes belong to no element and are left out: {few(lost)}")
+            self._note("left-out", f"{len(lost)} nodes belong to no element and are left out: {few(lost)}", "limit")
         apart = np.setdiff1d(self.raw.lines, self.raw.numbers[used])
         if len(apart):
-            self._note("left-out", f"lines off all solids (beams) are left out with {len(apart)} nodes: {few(apart)}")
+            self._note(
+                "left-out", f"lines off all solids (beams) are left out with {len(apart)} nodes: {few(apart)}", "limit"
+            )
 
     def _parts(
         self, numbers: Index, cells: list[Index], wanted: Mapping[str, str] | Sequence[str] | None
@@ -344,7 +346,7 @@ class _Builder:
                 self._by_key(label, key[on], skins, found)
             if not on.all():
                 text = f"{np.count_nonzero(~on)} shells {label!r} are not on a solid and are left out, with their "
-                self._note("left-out", text + "stiffness and mass")
+                self._note("left-out", text + "stiffness and mass", "limit")
         self._of_sides(numbers, cells, skins, found)
         faces: dict[str, Blocks] = {}
         face_part: dict[str, str] = {}
@@ -440,7 +442,7 @@ class _Builder:
                 "of a solid, and is left out; where it is a joint, put the elements"
             )
         text += " on each side into an element set of their own, which is then a part with its own face"
-        self._note("left-out", text)
+        self._note("left-out", text, "limit")
 
     def _split(
         self, points: Array, blocks: dict[str, Blocks], faces: dict[str, Blocks], face_part: dict[str, str]

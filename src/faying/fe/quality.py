@@ -35,6 +35,7 @@ class MeshQuality:
             out.append(
                 Note(
                     code="stiff-elements",
+                    severity="limit",
                     text=f"{share:.0%} of the elements are tetrahedra with four nodes, which are far too stiff in "
                     "bending (frequencies too high by half or more); mesh with ten nodes",
                 )
@@ -43,6 +44,7 @@ class MeshQuality:
             out.append(
                 Note(
                     code="distorted-elements",
+                    severity="wrong",
                     text=f"{self.poor} elements are nearly flat (scaled Jacobian {self.least:.2g}, {POOR:g} at least); "
                     "stresses and stiffness there are poor: mesh anew",
                 )

@@ -31,7 +31,7 @@ from faying.typing import Array, Index
 ELEMENTS, UNKNOWNS = 5.0, 4.5
 GRADING = 0.4  # growth of elements away from where they are fine
 TRIES = ((1.0, GRADING), (0.8, 0.3), (0.6, 0.2))  # size over that asked for, and grading, until the mesher has a mesh
-STORED = 3  # version of what the cache holds; it rises with any change of what this module makes of a file
+STORED = 4  # version of what the cache holds; it rises with any change of what this module makes of a file
 # netgen numbers the middle nodes by these edges
 TET10 = from_edges("tet10", ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)))
 TRI6 = from_edges("tri6", ((1, 2), (0, 2), (0, 1)))

@@ -193,7 +193,7 @@ def _identified(
             "E, density or a factor on a part is listed under [uncertain] and identified; what was measured of parts "
             "alone is not used"
         )
-        cut.append(Note(code="left-out", text=text))
+        cut.append(Note(code="left-out", severity="limit", text=text))
     for law in range(max(len(choice.models), 1)):
         parts = KnownParts.of(study, reduced.trainer.structure, reduced.modes(ensemble, law)) if tested else None
         model = StudyModel(ensemble, reduced, stage, law, parts)

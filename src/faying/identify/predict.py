@@ -196,13 +196,15 @@ def _notes(study: Study, found: Prediction, mesh: MeshError | None) -> Iterator[
         text = "no waves are drawn: the faces are curved, have no room for waves, or are seats of a solid bolt"
         yield Note(code="no-waves", text=f"{joint_names(flat)}: {text}")
     for reason, count in found.reasons.items():
-        yield Note(code="no-answer", text=f"{count} of {len(found.values)} samples have no answer: {reason}")
+        yield Note(
+            code="no-answer", severity="wrong", text=f"{count} of {len(found.values)} samples have no answer: {reason}"
+        )
     if found.convergence > MOVED:
         text = (
             f"half of the samples give ends of the intervals that differ by up to {found.convergence:.0%} of their "
             "width; take more samples"
         )
-        yield Note(code="few-samples", text=text)
+        yield Note(code="few-samples", severity="limit", text=text)
     far = int(np.count_nonzero(np.nanmax(found.above_range_share[found.sound], axis=1) > ABOVE_RANGE))
     if far:
         text = (
@@ -217,7 +219,7 @@ def _notes(study: Study, found: Prediction, mesh: MeshError | None) -> Iterator[
                 f"test mode {mode + 1} has no partner in {int(lost[:, mode].sum())} of {found.answered} samples; its "
                 "interval is that of the others"
             )
-            yield Note(code="test-modes", text=text)
+            yield Note(code="test-modes", severity="limit", text=text)
     if not choice.models:
         low, high = (f"{end:.2%}" for end in (found.discrepancy.min(), found.discrepancy.max()))
         of_mesh = "" if mesh is None else f", and for the error of the mesh, {mesh.parts.max():.2%} or less taken off"
@@ -225,7 +227,7 @@ def _notes(study: Study, found: Prediction, mesh: MeshError | None) -> Iterator[
             f"the intervals include what is listed above, and {low if low == high else f'{low} to {high}'} of each "
             f"frequency for what else the parts are (uncertain.structure, discrepancy, tests of parts){of_mesh}"
         )
-        yield Note(code="interval", text=text)
+        yield Note(code="interval", severity="limit", text=text)
     yield from mesh_notes(study, mesh)
 
 
@@ -237,11 +239,17 @@ def of_bases(errors: Array) -> list[Note]:
     places = ("the worst by their own estimate", "some others from all over")
     pairs = zip(known, places, strict=True)
     parts = [f"{row.max():.1e} at {place} ({len(row)} looked at)" for row, place in pairs if len(row)]
-    return [Note(code="bases", text=f"the small bases miss a frequency of a sample by up to {', '.join(parts)}")]
+    return [
+        Note(
+            code="bases",
+            severity="wrong",
+            text=f"the small bases miss a frequency of a sample by up to {', '.join(parts)}",
+        )
+    ]
 
 
 def cut_notes(columns: Sequence[Any]) -> list[Note]:
     """Say what was cut of a distribution that reaches values which the number cannot have."""
     text = "of its probability is outside the possible values and is left out"
     cut = [column for column in columns if column.cut > 1e-6]
-    return [Note(code="uncertain-cut", text=f"{one.key}: {one.cut:.2g} {text}") for one in cut]
+    return [Note(code="uncertain-cut", severity="limit", text=f"{one.key}: {one.cut:.2g} {text}") for one in cut]

@@ -260,17 +260,17 @@ def _notes(work: Assembler, found: Assemblies) -> Iterator[Note]:
     """What a reader of the scatter ought to know."""
     study, count = work.case.study, len(found.frequencies)
     for reason, number in found.reasons.items():
-        yield Note(code="no-answer", text=f"{number} of {count} assemblies have no answer: {reason}")
+        yield Note(code="no-answer", severity="wrong", text=f"{number} of {count} assemblies have no answer: {reason}")
     if count < ENOUGH:
         text = f"of {count} assemblies none need lie below 5 or above 95 %; take {ENOUGH} or more"
-        yield Note(code="few-samples", text=text)
+        yield Note(code="few-samples", severity="limit", text=text)
     assumed = [
         one.name for one, face in zip(study.joints, work.faces, strict=True) if face is not None and one.form is None
     ]
     if assumed:
         names = joint_names(assumed)
         text = f"{names}: the study gives no form of the faces; all assemblies have one draw of assumed waves"
-        yield Note(code="waves-assumed", text=text)
+        yield Note(code="waves-assumed", severity="limit", text=text)
     if "order" in found.sources and not study.in_order:
         left = float(np.nanmean(found.left / found.forces))
         text = (

@@ -29,7 +29,7 @@ def of_data(parameters: int, wanted: Mask, used: Mask, loads: Array, modes: int)
     ]
     if lost:
         text = f"Not used, since the model has no partner for them over most of the priors: {', '.join(lost)}."
-        yield Note(code="test-modes", text=text)
+        yield Note(code="test-modes", severity="limit", text=text)
     count, measured = int(used.sum()), "frequencies" if used.shape[1] == modes else "frequencies and loss factors"
     if parameters > count:
         yield Note(
@@ -47,7 +47,7 @@ def of_answers(reasons: Sequence[str], where: str) -> list[Note]:
     listed = [f"{reason} ({times})" for reason, times in failed.most_common(SHOWN)]
     rest = f", and {len(failed) - SHOWN} other reasons" if len(failed) > SHOWN else ""
     text = f"{failed.total()} of {len(reasons)} points {where} have no answer: {', '.join(listed)}{rest}."
-    return [Note(code="no-answer", text=text)]
+    return [Note(code="no-answer", severity="wrong", text=text)]
 
 
 def of_posterior(names: Sequence[str], priors: Sequence[Distribution], samples: Array) -> Iterator[Note]:
@@ -77,7 +77,7 @@ def of_sampling(correlation: float) -> list[Note]:
         f"The samples moved little in one stage (correlation {correlation:.2f} with its start): there may be several "
         "separate solutions, whose weights are less certain than the intervals within each."
     )
-    return [Note(code="not-mixed", text=text)]
+    return [Note(code="not-mixed", severity="limit", text=text)]
 
 
 def of_surrogate(missed: float, claimed: float, scatter: float, *, rough: bool) -> Iterator[Note]:
@@ -87,10 +87,10 @@ def of_surrogate(missed: float, claimed: float, scatter: float, *, rough: bool) 
             f"About the posterior the surrogate misses the model by {missed:.2%} rms, where its own error says "
             f"{claimed:.2%}: the intervals may be too narrow or in the wrong place. Narrower priors help."
         )
-        yield Note(code="surrogate-rough", text=text)
+        yield Note(code="surrogate-rough", severity="limit", text=text)
     if claimed > CLEARLY * scatter:
         text = (
             f"The surrogate's error, {100 * claimed:.3g} %, is greater than that of the test, {100 * scatter:.3g} %: "
             "the intervals are wider than the test would allow. More evaluations or narrower priors help."
         )
-        yield Note(code="surrogate-wide", text=text)
+        yield Note(code="surrogate-wide", severity="limit", text=text)

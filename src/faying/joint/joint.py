@@ -159,7 +159,7 @@ def _material_notes(name: str, law: ContactLaw, rough: Solid, other: Solid) -> l
         f"{name}: the law was made for a contact modulus E* of {modulus / 1e9:.4g} GPa, the materials of its parts "
         f"have {here / 1e9:.4g} GPa; make the law for the materials of the parts, unless you want this"
     )
-    return [Note(code="law-materials", joint=name, text=text)]
+    return [Note(code="law-materials", severity="wrong", joint=name, text=text)]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -309,7 +309,13 @@ def law_notes(structure: BoltedStructure, preload: PreloadState, load: float) ->
     """Say where contact is lost, and how much of a joint's stiffness lies outside the validity range of its law."""
     kilo = load_text(load)
     out = [
-        Note(code="open", joint=name, load=load, text=f"{name}, {kilo}: no contact is left; the joint carries nothing")
+        Note(
+            code="open",
+            severity="wrong",
+            joint=name,
+            load=load,
+            text=f"{name}, {kilo}: no contact is left; the joint carries nothing",
+        )
         for name in open_joints(structure, preload.pressures)
     ]
     for joint, pressure in zip(structure.joints, preload.pressures, strict=True):
@@ -322,7 +328,9 @@ def law_notes(structure: BoltedStructure, preload: PreloadState, load: float) ->
         for reason, share in joint.law.outside_validity(pressure, joint.interface.weights).items():
             where = f"outside its validity range for {percent(share)} of the joint's stiffness"
             text = f"{joint.name}, {kilo}: {joint.law.model.name} is {where}: {reason}"
-            out.append(Note(code="outside-validity", joint=joint.name, load=load, share=share, text=text))
+            out.append(
+                Note(code="outside-validity", severity="limit", joint=joint.name, load=load, share=share, text=text)
+            )
     return out
 
 
@@ -337,5 +345,5 @@ def end_notes(structure: BoltedStructure, springs: Sequence[Springs[Interface]],
                 f"{joint.name}, {load_text(load)}: on {percent(share)} of the joint the pressure exceeds the "
                 f"{model.greatest_pressure / 1e6:.3g} MPa at which {model.name} ends; stiffness stays constant there"
             )
-            out.append(Note(code="beyond-law", joint=joint.name, load=load, share=share, text=text))
+            out.append(Note(code="beyond-law", severity="limit", joint=joint.name, load=load, share=share, text=text))
     return out

@@ -65,7 +65,7 @@ def bolt_notes(structure: Bolted, forces: Mapping[str, Sequence[float]]) -> list
                 f"bolt {bolt.name!r}: a preload of {show(least, 'N')} is less than the {show(weight, 'N')} that the "
                 "structure weighs; check its unit and its prefix, for example 12 kN"
             )
-            out.append(Note(code="slight-preload", load=least, text=text))
+            out.append(Note(code="slight-preload", severity="limit", load=least, text=text))
         if bolt.fastener is not None:
             out += _proof(bolt, greatest)
         elif isinstance(bolt, Bolt):
@@ -86,7 +86,7 @@ def material_notes(structure: Bolted) -> list[Note]:
                 f"part {part!r}: E = {E} and a density of {density} make a speed of sound of {show(speed, 'm/s')}, "
                 "which no solid has; are their units right?"
             )
-            out.append(Note(code="odd-material", text=text))
+            out.append(Note(code="odd-material", severity="wrong", text=text))
     return out
 
 
@@ -100,9 +100,9 @@ def _proof(bolt: Bolt | SolidBolt, force: float) -> list[Note]:
     what += f"{fastener.grade}, {show(proof, 'N')} (ISO 898-1)"
     if force > proof:
         text = f"{what}: the bolt stretches permanently, which the model leaves out. Lower the preload, or take another"
-        return [Note(code="beyond-proof", load=force, text=text)]
+        return [Note(code="beyond-proof", severity="wrong", load=force, text=text)]
     text = f"{what}, more than the {USED:.0%} that a bolt is usually tightened to"
-    return [Note(code="near-proof", load=force, text=text)]
+    return [Note(code="near-proof", severity="limit", load=force, text=text)]
 
 
 def _shank(bolt: Bolt, force: float) -> list[Note]:
@@ -117,7 +117,7 @@ def _shank(bolt: Bolt, force: float) -> list[Note]:
         f"above the yield strength of its material, {show(strength, 'Pa')}; the shank stays elastic here. "
         "Lower the preload, take a thicker bolt, or give its grade"
     )
-    return [Note(code="bolt-yield", load=force, text=text)]
+    return [Note(code="bolt-yield", severity="wrong", load=force, text=text)]
 
 
 def least_seat_area(fitted: FittedBolt | FittedSolidBolt) -> float:
@@ -144,7 +144,7 @@ def _seats(structure: Bolted, fitted: FittedBolt | BoltPlace, force: float) -> l
                 f"{show(pressure, 'Pa')}, above the {limit[1]} of the part, {show(limit[0], 'Pa')}; "
                 "the part stays elastic here. Lower the preload, widen the seat, or give the part's bearing_limit"
             )
-            out.append(Note(code="seat-yield", load=force, text=text))
+            out.append(Note(code="seat-yield", severity="wrong", load=force, text=text))
     return out
 
 
@@ -167,5 +167,5 @@ def pressure_notes(structure: BoltedStructure, pressures: Sequence[Array], load:
                 f"strength of the softer part, {show(strength, 'Pa')}; the parts stay elastic here. Lower the preload, "
                 "or check the area of the joint and the yield_strength of its parts"
             )
-            out.append(Note(code="joint-yield", joint=joint.name, load=load, share=share, text=text))
+            out.append(Note(code="joint-yield", severity="wrong", joint=joint.name, load=load, share=share, text=text))
     return out

@@ -162,7 +162,7 @@ def intervals_of(
             f"load {case!r}: where all inputs scatter together, an answer departs from first order by "
             f"{off.max():.0%}; the intervals are rough there"
         )
-        notes = (*notes, Note(code="load-intervals", text=text))
+        notes = (*notes, Note(code="load-intervals", severity="limit", text=text))
     return replace(found, intervals=intervals, notes=notes)
 
 

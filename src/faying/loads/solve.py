@@ -376,7 +376,7 @@ def load_notes(
             f"{', '.join(sticking)} sticks everywhere under the loads, since no friction is given; the table has the "
             'friction that it needs ("mu >"). Give joint.friction to let it slip'
         )
-        out.append(Note(code="loads-stick", text=text))
+        out.append(Note(code="loads-stick", severity="limit", text=text))
     return out
 
 
@@ -384,21 +384,21 @@ def _joint(case: str, name: str, contact: LoadedContact, pressure: Array, opened
     out, weights, law = [], contact.weights, contact.law
     if not np.any(pressure > 0):
         text = f"load {case!r}: {name} opens fully; the bolts alone hold its parts together"
-        out.append(Note(code="load-opens", joint=name, share=1.0, text=text))
+        out.append(Note(code="load-opens", severity="wrong", joint=name, share=1.0, text=text))
     share = float(weights @ (pressure > law.model.greatest_pressure) / weights.sum())
     if share > 0:
         text = (
             f"load {case!r}: on {percent(share)} of {name} the pressure exceeds the "
             f"{show(law.model.greatest_pressure, 'Pa')} at which {law.model.name} ends"
         )
-        out.append(Note(code="beyond-law", joint=name, share=share, text=text))
+        out.append(Note(code="beyond-law", severity="limit", joint=name, share=share, text=text))
     more = float(weights @ np.maximum(pressure - contact.pressure, 0.0))
     if law.yields and more > LITTLE * float(weights @ contact.pressure):
         text = (
             f"load {case!r}: {name} is pressed harder in places than by the preload, with {show(more, 'N')} more in "
             f"all; asperities of {law.model.name} would yield further there and close more, which the model leaves out"
         )
-        out.append(Note(code="load-yields", joint=name, text=text))
+        out.append(Note(code="load-yields", severity="limit", joint=name, text=text))
     return out
 
 
@@ -406,11 +406,11 @@ def _bolt(case: str, bolt: object, force: float) -> list[Note]:
     fastener, name = getattr(bolt, "fastener", None), getattr(bolt, "name", "")
     if force <= 0:
         text = f"load {case!r}: bolt {name!r} has no tension left ({show(force, 'N')}); its head comes off its seat"
-        return [Note(code="bolt-loose", text=text)]
+        return [Note(code="bolt-loose", severity="wrong", text=text)]
     if fastener is not None and force > fastener.proof_load:
         text = (
             f"load {case!r}: bolt {name!r} carries {show(force, 'N')}, more than its proof load of "
             f"{show(fastener.proof_load, 'N')}; it stretches permanently, which the model leaves out"
         )
-        return [Note(code="beyond-proof", load=force, text=text)]
+        return [Note(code="beyond-proof", severity="wrong", load=force, text=text)]
     return []

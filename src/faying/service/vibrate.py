@@ -412,7 +412,7 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
             f"{what} goes up to {last:g} Hz, and the modes that were found up to {modes[-1]:.5g} Hz: what is beyond "
             "answers as at rest; raise modes.count"
         )
-        yield Note(code="vibration-band", text=text)
+        yield Note(code="vibration-band", severity="limit", text=text)
     level = found["level"][1]
     rms = " rms" if excitation.kind == "random" else ""
     for k in np.flatnonzero(CURVE_REACH[excitation.kind] * level > reach).tolist():
@@ -421,13 +421,13 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
             "cycle of the mode alone is found, as its joints open or slide; frequency and damping stay as they are "
             "there, which may be far off"
         )
-        yield Note(code="vibration-beyond", text=text)
+        yield Note(code="vibration-beyond", severity="wrong", text=text)
     if np.any(found.get("jumps", np.zeros(1)) > 0):
         text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
         yield Note(code="vibration-jumps", text=text)
     rest = assumes_rest(given.base.structure, given.base.parts_loss)
     if words := assumed_words(friction=sets.least is not None, rest=rest):
-        yield Note(code="level-damping", text=f"damping in service assumes {' and '.join(words)}")
+        yield Note(code="level-damping", severity="limit", text=f"damping in service assumes {' and '.join(words)}")
     if given.base.structure.joints:
         text = (
             "each mode has the damping of its own level; where two modes that shake one joint are strong together, the "
