@@ -72,7 +72,7 @@ def test_harmonic_balance_goes_on_from_a_cycle(mode):
     model = leveled(chain([1.0, 0.7], [3.0, 2.0], slider(*IWAN)))
     passes = model.passes(0.5, mode)
     assert passes.converged
-    one, other = (model._balanced(model.passes(level, mode), 0.5, mode) for level in (0.05, 0.2))
+    one, other = (model.balanced(model.passes(level, mode), 0.5, mode) for level in (0.05, 0.2))
     assert one.level == other.level == 0.5
     assert one.frequency == pytest.approx(other.frequency, rel=1e-5)
     assert one.damping == pytest.approx(other.damping, rel=1e-3)

@@ -28,9 +28,10 @@ from faying.typing import Array
 
 PER_DECADE = 6.0  # points of the curve
 LEAD_IN = 4  # decades below the first level that a curve may start
-SHORTEST = 1 / 16  # of a step, below which the continuation gives up
+SHORTEST = 1 / 16  # of a step
 TOLERANCE = 1e-7  # of the residual over the elastic forces of the mode
 MAX_NEWTON_STEPS = 25  # Newton steps of a point
+STALLED = 4  # Newton steps that do not halve the residual, after which a point is given up
 FAST = 0.3  # fall of the residual from one step to the next with which an old derivative is kept
 LEADING = 32  # instants for the derivative: with 16 steps stall where edges open and close
 END_TOLERANCE = 2e-3  # of the last level: nearer than that a curve has reached its end
@@ -87,6 +88,7 @@ class Epmc:
         tolerance: Residual over the elastic forces of the mode at which a point counts as solved.
         most_sliding: Share of the limit of friction that slides at which a curve ends, above 1 for never.
         newton_steps: After so many without an answer the step of the curve is halved.
+        shortest: Share of the first step of the curve, in its logarithm, below which the continuation gives up.
 
     Raises:
         InputError: The model has no such mode.
@@ -100,6 +102,7 @@ class Epmc:
     tolerance: float = TOLERANCE
     most_sliding: float = ALL_SLIDING
     newton_steps: int = MAX_NEWTON_STEPS
+    shortest: float = SHORTEST
 
     def __post_init__(self) -> None:
         if not 0 <= self.mode < len(self.model.mass):
@@ -158,13 +161,15 @@ class Epmc:
         """
         z = self._predicted(amplitude, known or [self.first()])
         old, size = np.inf, np.inf
+        sizes: list[float] = []
         step: _Accelerated | None = None
         for _ in range(self.newton_steps):
             left, forces = self._residual(z, amplitude)
             size = float(np.abs(left / self._scales).max())
+            sizes.append(size)
             if size < self.tolerance:
                 return self._point(z, amplitude, forces)
-            if not np.isfinite(size) or size > 1e6:
+            if not np.isfinite(size) or size > 1e6 or (len(sizes) > STALLED and size > sizes[-1 - STALLED] / 2):
                 break
             if step is None or size > FAST * old:
                 step = _Accelerated(self._factored(z, amplitude))
@@ -209,7 +214,7 @@ class Epmc:
                 point = self.solve(last.amplitude * min(step, self._to_end(points, high)), points[-3:])
             except NotConverged as fault:
                 step = step**0.5
-                if np.log(step) < SHORTEST * np.log(longest):
+                if np.log(step) < self.shortest * np.log(longest):
                     reason = f"no periodic motion is found above {points[-1].level:.3g}: {fault}"
                     return EpmcCurve(points=tuple(points), code="not-converged", reason=reason)
                 continue

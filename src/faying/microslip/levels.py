@@ -31,7 +31,7 @@ from faying.numerics.solve import conjugate_gradients
 from faying.numerics.span import Span
 from faying.typing import Array
 
-PASSES = 40
+PASSES = 24  # harmonic balance costs as much as the next ten, and settles more
 HALF = 0.5  # of a change of secants under which the mode would soften too much, and of the first change of the lag
 # share of a change of secants and lag from the third pass on, by Aitken's rule: undamped, the two drive each other away
 # from the answer where most of a joint slides, and damped by a half alone they take twice as many passes
@@ -57,12 +57,14 @@ SPRINGS = 32  # into which a law is cut at each point
 # softens moves more; fewer stiffnesses are changed at a time until the mode keeps that much
 MIN_LEFT = 0.25
 MIN_SQUARED = 0.01  # of the squared frequency at rest, below which the joints do not hold the mode: it has no answer
+NO_DAMPING = 1e-7  # ratio: what changes by a share of it has settled
 MAX_DAMPING = 1.0  # a mode that is damped by as much does not vibrate: it has no answer
 MAX_OTHER_ENERGY = 10.0  # of the first harmonic, in what corrects it: more of it is no cycle of this mode
 BALANCE = 1e-5  # residual over the elastic forces of a mode, and twice the error of its damping ratio
 BALANCE_STEPS = 12  # of Newton: what has an answer takes 5 to 10
+BALANCE_SHORTEST = 1 / 4  # of its step of 1.5: it ends within a tenth of the last level with an answer
 MIN_SHARE = 1 / 64  # of a change of the secant stiffnesses, below which the passes have no answer at a level
-UNSETTLED = 0.01  # change of the damping in the last pass above which harmonic balance takes over
+UNSETTLED = 1e-3  # change of the damping in the last pass above which harmonic balance takes over
 MOST_DOWN = 8  # halves of a level that has not settled, of which one has to settle for a balance to begin with
 
 
@@ -97,6 +99,7 @@ class LevelCycle:
         motion: Fourier coefficients of the coordinates (1 + 2H, m) [m].
         traction: those of the tractions of each joint (1 + 2H, q, 3) [Pa] under that motion.
         at_rest: whether its joints soften so little that it keeps its motion at rest.
+        balanced: whether harmonic balance found it, as passes did not settle.
     """
 
     level: float
@@ -107,11 +110,12 @@ class LevelCycle:
     motion: Array
     traction: tuple[Array, ...]
     at_rest: bool
+    balanced: bool = False
 
     @property
     def converged(self) -> bool:
         """Whether there is an answer, which passes no longer change."""
-        return bool(np.isfinite(self.frequency)) and self.change < UNSETTLED
+        return bool(np.isfinite(self.frequency)) and (self.balanced or self.change < UNSETTLED)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,24 +154,18 @@ class LevelModel:
         )
         return AtLevels(frequencies=frequency, damping=damping, error=error)
 
-    def up_to(self, level: float, number: int, near: LevelCycle | None = None) -> LevelCycle:
+    def up_to(self, level: float, number: int) -> LevelCycle:
         """One elastic mode, counted from 0, at the greatest level with an answer up to the one given [m/s2].
 
-        Args:
-            level, number: the level and the mode.
-            near: an answer below this level, with which a balance begins; looked for where left out.
-
-        Returns:
-            Of passes that settle, harmonic balance and passes that do not settle, in this order, the one that goes
-            farthest; without frequency where there is none.
+        Of passes that settle, harmonic balance and passes that do not settle, in this order, the one that goes
+        farthest; without frequency where there is none.
         """
         tried = [self.passes(level, number)]
-        while near is None and not tried[-1].converged and len(tried) <= MOST_DOWN:
+        while not tried[-1].converged and len(tried) <= MOST_DOWN:
             tried.append(self.passes(level * HALF ** len(tried), number))
         if tried[0].converged:
             return tried[0]
-        near = near or (tried[-1] if tried[-1].converged else None)
-        found = [self._balanced(near, level, number)] if near else []
+        found = [self.balanced(tried[-1], level, number)] if tried[-1].converged else []
         found += [one for one in tried if np.isfinite(one.frequency)]
         return max(found, key=lambda one: one.level, default=tried[0])
 
@@ -188,7 +186,7 @@ class LevelModel:
             cycles = forces.cycles
             lost = sum(float(j.weights @ c.dissipated) for j, c in zip(self.slip.joints, cycles, strict=True))
             before, damping = damping, max(lost, 0.0) / (2 * np.pi * speed**2 * amplitude**2)
-            change = abs(damping - before) / damping if damping > 0 else 0.0
+            change = abs(damping - before) / max(damping, NO_DAMPING)
             wanted, squared = self._secants(motion, cycles), speed**2
             # change of the squared frequency, to first order
             softer = sum(j.work(c, motion[1]) for j, c in zip(self.slip.joints, wanted, strict=True)) / amplitude**2
@@ -226,7 +224,7 @@ class LevelModel:
         """What the basis may miss of a damping, over it, where the joints have moved a mode to an angular frequency."""
         return ERROR_OF_SHAPE * float(np.sqrt(abs(1 - (speed / float(self.modes[0][number])) ** 2)))
 
-    def _balanced(self, start: LevelCycle, level: float, number: int) -> LevelCycle:
+    def balanced(self, start: LevelCycle, level: float, number: int) -> LevelCycle:
         """Follow a mode from an answer to a greater level by harmonic balance, as far as it gets."""
         epmc = Epmc(
             model=self.slip,
@@ -236,6 +234,7 @@ class LevelModel:
             observer=self.vectors.reshape(-1, 3, self.vectors.shape[1]),
             tolerance=BALANCE,
             newton_steps=BALANCE_STEPS,
+            shortest=BALANCE_SHORTEST,
         )
         first = EpmcPoint(
             amplitude=float(np.linalg.norm(start.motion[1:3])),
@@ -258,6 +257,7 @@ class LevelModel:
             motion=last.coordinates,
             traction=last.traction,
             at_rest=False,
+            balanced=True,
         )
 
     def _towards(

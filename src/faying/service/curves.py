@@ -19,8 +19,10 @@ LOWEST = 0.02  # of the amplitude that a mode would have with the least damping 
 STEP = 2.0  # from level to level: between them a curve of two plateaus is smooth to 1 %
 STEP_AT_ENDS = 4.0  # the same at the ends of friction, where 3 % do
 BEND = 0.5  # change of the power of slip from step to step that asks for smaller ones: between them it is right to 5 %
+SMOOTH = 0.05  # of a slip, by which a point between two others may be off their power
 LONGER = 1.5  # power of a step that the next one may be
 FINEST_STEP = 1.15  # the smallest: two blocks that begin to slide as a whole have 90 times the damping over a step of 2
+NO_SLIP = 0.05  # of the least damping at rest: a mode with less slip at the greatest amplitude has one point there
 SLIGHT = 0.1  # of the damping at rest: a curve that begins with more slip goes down first, in steps of
 DOWN = 8.0
 MOST_DOWN = 6  # at most so many of them
@@ -132,43 +134,76 @@ def _march(
     points: list[tuple[float, float, float]] = []
     longest = step
     last: LevelCycle | None = None
-    level = LOWEST * needs(curve) * scale
+    ahead: LevelCycle | None = None  # where the curve bends before it
+    settles = True  # where passes do not, they seldom do again above
+    top = needs(curve) * scale
+    cycle = model.passes(top, mode)
+    if cycle.converged and cycle.damping < NO_SLIP * curve.rest:  # and less below
+        return _through(curve, [_point(cycle, moved)]), False
+    level = LOWEST * top
     cycle = model.passes(level, mode)
     for _ in range(MOST_DOWN):
         if cycle.damping < SLIGHT * curve.rest or level == 0:  # False where there is no answer
             break
         level /= DOWN
         cycle = model.passes(level, mode)
-    while level > 0:
-        if not np.isfinite(cycle.frequency):
-            return curve, True
-        amplitude = float(np.linalg.norm(cycle.motion[1:3]))
-        point = (amplitude, 2 * np.pi * cycle.frequency * moved, cycle.damping)
-        bends = cycle.damping > SLIGHT * curve.rest and _bends([*points, point])
-        if (bends or cycle.level < level) and step > FINEST_STEP:
-            level /= step
+    while level > 0 and np.isfinite(cycle.frequency):
+        point = _point(cycle, moved)
+        if _bends([*points, point], curve.rest) and cycle.level >= level and step > FINEST_STEP:
+            ahead, level = cycle, level / step
             step = np.sqrt(step)
         else:
-            last = cycle
-            if not points or amplitude > points[-1][0]:  # else its shape changed by more than the level
-                points.append(point)
-                amplitudes, speeds, slips = np.array(points).T
-                curve = replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
-                if amplitude >= needs(curve):
-                    break
+            new = [cycle]
+            if ahead is not None and _is_between(points[-1], point, _point(ahead, moved)):
+                new.append(ahead)
+            for point in (_point(one, moved) for one in new):
+                if not points or point[0] > points[-1][0]:  # else its shape changed by more than the level
+                    points.append(point)
+                    curve = _through(curve, points)
+                    if point[0] >= needs(curve):
+                        return curve, False
             if cycle.level < level:
-                return curve, True
+                break
+            ahead, last = None, new[-1]
+            level = last.level
             step = min(longest, step**LONGER)
         level *= step
-        cycle = model.up_to(level, mode, last)
-    return curve, False
+        settles = settles and (cycle := model.passes(level, mode)).converged
+        if not settles and last is not None:
+            found = model.balanced(last, level, mode) if last.converged else cycle
+            cycle = found if found.level >= level else max(found, model.passes(level, mode), key=_reach)
+    return curve, level > 0
 
 
-def _bends(points: Sequence[tuple[float, float, float]]) -> bool:
-    """Whether the power of the amplitude with which slip goes changes much at the last point but one."""
+def _reach(cycle: LevelCycle) -> float:
+    return cycle.level if np.isfinite(cycle.frequency) else 0.0
+
+
+def _point(cycle: LevelCycle, moved: float) -> tuple[float, float, float]:
+    """Amplitude, circular frequency [rad/s] and damping ratio of slip."""
+    return float(np.linalg.norm(cycle.motion[1:3])), 2 * np.pi * cycle.frequency * moved, cycle.damping
+
+
+def _through(curve: ModeCurve, points: Sequence[tuple[float, float, float]]) -> ModeCurve:
+    amplitudes, speeds, slips = np.array(points).T
+    return replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
+
+
+def _is_between(low: tuple[float, ...], point: tuple[float, ...], high: tuple[float, ...]) -> bool:
+    """Whether the slip of a point is a power of the amplitude between two others, to `SMOOTH`."""
+    x, _, y = np.log(np.array([low, point, high]).T)
+    return bool(abs(np.interp(x[1], x[::2], y[::2]) - y[1]) < SMOOTH)
+
+
+def _bends(points: Sequence[tuple[float, float, float]], rest: float) -> bool:
+    """Whether the power of the amplitude with which slip goes changes much at the last point but one.
+
+    rest: damping at rest, beside which slip counts.
+    """
     amplitudes, _, slips = np.log(np.maximum(np.array(points[-3:]).T, [[0.0], [0.0], [LEAST_SLIP]]))
     along = np.diff(amplitudes)
     if np.any(along <= 0):
         return False
     # below the first point slip is in proportion to the amplitude
-    return bool(np.ptp(np.concatenate([[1.0], np.diff(slips) / along])[-2:]) > BEND)
+    change = float(np.ptp(np.concatenate([[1.0], np.diff(slips) / along])[-2:]))
+    return change > BEND * (1 + rest / points[-1][2]) if points[-1][2] > 0 else False

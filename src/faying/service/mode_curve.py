@@ -3,7 +3,7 @@
 q is the coordinate of a mass-normalised shape: q'' + 2 zeta(a) omega(a) q' + omega(a)^2 q = f, a the amplitude of q.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -78,13 +78,17 @@ class ModeCurve:
         return PchipInterpolator(known, self.speeds), lambda x: np.exp(powers(x))
 
     @cached_property
-    def _spent(self) -> tuple[Array, Array]:
-        """Amplitudes a (n,), even in logarithms, and the integral of 2 zeta omega^3 a from 0 to them (n,)."""
+    def _spent(self) -> tuple[Array, ...]:
+        """Amplitudes a (n,), even in logarithms, and the integral of 2 zeta omega^3 a from 0 to them (n,).
+
+        And a^2, omega^3 a^2, zeta omega^3 a^2 there.
+        """
         a = np.geomspace(FIRST_RATIO * self.amplitudes[0], LAST_RATIO * self.amplitudes[-1], GRID)
         speed, damping = self.at(a)
         rate = 2 * damping * speed**3 * a**2  # over log(a)
         parts = (rate[1:] + rate[:-1]) / 2 * np.diff(np.log(a))
-        return a, rate[0] / 2 + np.concatenate([[0.0], np.cumsum(parts)])
+        spent = rate[0] / 2 + np.concatenate([[0.0], np.cumsum(parts)])
+        return a, spent, a**2, speed**3 * a**2, rate / 2
 
     def under(self, power: float) -> RandomLevel:
         """The vibration in which noise gives the mode a mean power [m2 kg/s3] = E[zeta omega^3 a^2].
@@ -99,14 +103,15 @@ class ModeCurve:
         if not len(self.amplitudes):
             sigma = float(np.sqrt(power / (2 * self.rest * self.speed**3)))
             return RandomLevel(sigma=sigma, speed=self.speed, damping=self.rest)
-        a, spent = self._spent
-        density = a**2 * np.exp(-spent / power)  # over log(a)
-        speed, damping = self.at(a)
-        square = float(density @ a**2)
-        cube = float(density @ (speed**3 * a**2)) / square
-        lost = float(density @ (damping * speed**3 * a**2)) / square
-        sigma = float(np.sqrt(square / density.sum() / 2))
-        return RandomLevel(sigma=sigma, speed=float(np.cbrt(cube)), damping=lost / cube)
+        sigma, speed, damping = (float(one) for one in self._under(np.array(power)))
+        return RandomLevel(sigma=sigma, speed=speed, damping=damping)
+
+    def _under(self, power: Array) -> tuple[Array, Array, Array]:
+        """The same of a curve with amplitudes, under powers of any shape."""
+        a, spent, square, cube, lost = self._spent
+        density = np.exp(-spent / power[..., None]) * a**2  # over log(a)
+        squares, cubes = density @ square, density @ cube
+        return np.sqrt(squares / density.sum(axis=-1) / 2), np.cbrt(cubes / squares), (density @ lost) / cubes
 
     def balance(self, variance: Callable[[float, float], float]) -> RandomLevel:
         """The vibration at which the equivalent linear mode has its own rms.
@@ -120,12 +125,14 @@ class ModeCurve:
         if at_rest == 0 or not len(self.amplitudes):
             return RandomLevel(sigma=float(np.sqrt(at_rest)), speed=self.speed, damping=self.rest)
 
+        def more(level: Sequence[float]) -> float:
+            return float(np.log(variance(level[1], level[2]) / level[0] ** 2))
+
         def short(log_power: float) -> float:
-            level = self.under(float(np.exp(log_power)))
-            return float(np.log(variance(level.speed, level.damping) / level.sigma**2))
+            return more(self.under(float(np.exp(log_power))))
 
         steps = np.log(2 * self.rest * self.speed**3 * at_rest * np.geomspace(LEAST_POWER, MOST_POWER, SCANNED))
-        above = np.flatnonzero(np.array([short(one) for one in steps]) > 0)
+        above = np.flatnonzero([more(one) > 0 for one in np.transpose(self._under(np.exp(steps))).tolist()])
         # of several answers the greatest, which the vibration may reach
         k = min(int(above[-1]), SCANNED - 2)
         return self.under(float(np.exp(brentq(short, steps[k], steps[k + 1], xtol=1e-10))))
