@@ -176,3 +176,13 @@ def test_a_finer_mesh_has_the_same_groups_in_the_same_order(solved, tmp_path):
     # the frame has two pairs of twins within 1 %, of one symmetry, which mix
     assert np.all(coarse.low[0][LOWEST] < fine.high[0][LOWEST])
     assert np.all(fine.low[0][LOWEST] < coarse.high[0][LOWEST])
+
+
+def test_a_change_by_way_of_itself_is_that_change(tmp_path):
+    """The torsion of two discs passes two pairs of twins; no second step is left then, so that none changes places."""
+    _, case, states, _ = prepared(tmp_path, "stack")
+    laws = [replace(joint.law, tangential=0.02) for joint in case.structure.joints]
+    change = replace(ChangedCase.nothing(case), laws=laws)
+    once, again = frequencies_of(case, states, [change, change], [None, 0])
+    assert once[0].argmin() == 2
+    np.testing.assert_allclose(again, once, rtol=1e-9)

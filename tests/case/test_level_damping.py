@@ -8,6 +8,7 @@ import pytest
 
 import faying
 from faying.answer.run import run
+from faying.case import level_damping
 from faying.case.level_damping import FRICTION, REST
 from faying.cli.run import text
 from faying.export import universal
@@ -67,6 +68,16 @@ def test_a_friction_that_is_given_leaves_nothing_open(study, found):
     assert given.levels.slip == pytest.approx(found.levels.slip, rel=0.05, abs=1e-7)
     assert not [note for note in given.notes if note.code == "level-damping"]
     assert [note for note in found.notes if note.code == "level-damping"]
+
+
+def test_what_is_not_known_of_friction_and_of_rest_adds_by_squares(study, found, monkeypatch):
+    """Of each side by itself: the distance by friction alone is that of a law whose loss is known."""
+    monkeypatch.setattr(level_damping, "rest_damping", lambda *_: np.tile(np.array(REST)[:, None], 4))
+    both, alone = run(study).levels, found.levels
+    assert both.slip == pytest.approx(alone.slip)
+    for side, rest in (("low", REST[0] - REST[1]), ("high", REST[2] - REST[1])):
+        friction = getattr(alone, side) - alone.damping
+        assert np.abs(getattr(both, side) - both.damping) == pytest.approx(np.hypot(friction, rest), rel=1e-9)
 
 
 def test_the_table_has_a_row_for_each_mode(found):

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 import faying
 from faying.answer.refine import refined, tolerance_of
 from faying.answer.run import run
-from faying.case.mesh_error import MESH_NOTED, size_for
+from faying.case.mesh_error import MESH_NOTED, MeshError, size_for
 from faying.cli.main import cli
 from faying.errors import InputError
 from faying.study import Study
@@ -109,6 +109,14 @@ def test_a_tolerance_is_a_share_within_reason():
             tolerance_of(wrong)
     assert size_for(10e-3, 8e-3, 4e-3) == pytest.approx(10e-3 / 2 ** (2 / 3))
     assert size_for(10e-3, 8e-3, 1e-3) == pytest.approx(10e-3 * 0.3)
+
+
+def test_a_finer_mesh_has_no_frequency_higher_but_by_what_it_does_to_the_contact():
+    """Rayleigh and Ritz: more functions lower a frequency; points of a joint move it either way."""
+    found = MeshError(parts=np.array([[0.02, 0.02]]), contact=np.array([[0.0, 0.005]]))
+    low, high = found.middle + found.offsets
+    assert high[0] == pytest.approx([0.0, 0.005])
+    assert low[0] == pytest.approx([-0.04, -0.045])
 
 
 def test_a_mesh_that_is_ready_is_not_refined():

@@ -13,6 +13,7 @@ from faying.contact.asperity.unloading import EtsionKligermanKadin
 from faying.contact.memory import STEP, Memory
 from faying.contact.models.greenwood_williamson import GreenwoodWilliamson
 from faying.contact.models.half_space import HalfSpace
+from faying.contact.response import Response
 from faying.halfspace.solve import solve_half_space
 from faying.surface.synthesize import spectral
 
@@ -242,3 +243,13 @@ def test_the_table_of_a_known_ratio_is_read_exactly():
     exact = (most / p) ** (0.3 / np.log(2))
     assert memory.ratio("k_n", p, most) == pytest.approx(exact, rel=1e-12)
     assert memory.ratio("k_n", most, p) == pytest.approx(1.0)
+
+
+def test_a_contact_that_has_carried_more_loses_nothing_in_the_normal_direction():
+    """Nor has it a slope on loading of its own; above what it carried both are those of first loading."""
+    memory = Memory.of(1e4, 1e8, lambda p: {"k_n": np.full((len(p), len(p)), 1.5)})
+    ones = np.ones(2)
+    first = Response(pressure=np.array([1e5, 1e7]), k_n=ones, k_load=0.5 * ones, loss_n=0.1 * ones)
+    after = memory.after(first, np.full(2, 1e6))
+    assert after["loss_n"].tolist() == [0.0, 0.1]
+    assert after["k_load"] == pytest.approx([1.5, 0.5])

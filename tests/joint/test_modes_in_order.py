@@ -1,6 +1,7 @@
 """Modes keep their place in an interval though others pass them: two discs, whose torsion falls below their twins."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import faying
 from faying.fe.interface import join
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
-from faying.joint.modal import ModalProblem, ModesChoice
+from faying.joint.modal import ModalProblem, ModesChoice, in_order_of
 from faying.joint.preload_case import PreloadCase
 from faying.joint.state import engine_for
 from faying.joint.structure import Structure
@@ -65,3 +66,17 @@ def test_torsion_and_twins_keep_their_places_when_the_joint_softens(structure, e
     assert len(twins) >= 2
     for a, b in twins:
         assert found[a] == pytest.approx(found[b], rel=1e-3)
+
+
+@pytest.mark.parametrize("one_way", [True, False])
+def test_springs_that_stiffen_and_soften_may_swap_modes_whose_ranges_are_apart(one_way):
+    """Masses of 1 kg on springs of 1 and 4 N/m, then of 4.41 and 1.21: only springs that go one way keep the order."""
+    problem = SimpleNamespace(
+        rigid_count=0, choice=ModesChoice(count=2), structure=SimpleNamespace(dynamic_matrices=(None, np.eye(2)))
+    )
+    before, after = (
+        SimpleNamespace(frequencies=np.array(f), shapes=shapes)
+        for f, shapes in (((1.0, 2.0), np.eye(2)), ((1.1, 2.1), np.eye(2)[::-1]))
+    )
+    found = in_order_of(before, problem, lambda shapes: after, one_way)
+    assert found.tolist() == ([1.1, 2.1] if one_way else [2.1, 1.1])

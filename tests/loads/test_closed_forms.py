@@ -334,3 +334,12 @@ def test_cycles_of_a_load_damage_the_bolt_by_its_own_change_of_force():
     slopes = np.where(found.stress_amplitude[:, 0] > endurance, 3, 5)
     exact = np.array([1e6, 5e7]) / 2e6 * (found.stress_amplitude[:, 0] / endurance) ** slopes
     assert after.damage[:, 0] == pytest.approx(exact, rel=1e-9)
+
+
+def test_a_load_that_stays_has_no_range_of_stress(held):
+    """Bent as before and pulled as before: the case that starts from it repeats nothing."""
+    across = [faying.Force("p1.right", force=(200.0, 50.0, 0))]
+    loads = [faying.Load("once", forces=across), faying.Load("still", forces=across, after="once")]
+    found = faying.load_cases(held[1], loads, modes=False)
+    assert found.bolt_moment[0, 0] > 0
+    assert found.stress_amplitude[1, 0] == pytest.approx(0, abs=1e-6 * found.stress_amplitude[0, 0])

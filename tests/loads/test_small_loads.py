@@ -97,3 +97,8 @@ def test_the_answer_does_not_depend_on_the_basis_or_on_the_company(tight):
         force -= trace.relative.T @ (contact.weights[:, None] * (traction - before)).ravel()
     free = np.setdiff1d(np.arange(len(force)), structure.fixed)
     assert np.linalg.norm(force[free]) < 1e-5 * np.linalg.norm(acts["bend"].force)
+    # the error that it states is what is left over, in its energy on the springs at rest, over that of the load
+    left, whole = (np.where(np.isin(np.arange(len(one)), free), one, 0.0) for one in (force, acts["bend"].force))
+    stiffness = structure.coupled(tight.springs)[0].tocsc()
+    energies = [one @ spsolve(stiffness, one) for one in (left, whole)]
+    assert state.error == pytest.approx(np.sqrt(energies[0] / energies[1]), rel=0.2)

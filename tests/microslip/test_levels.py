@@ -5,10 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from scipy.sparse.linalg import splu
 
+import faying
+from faying.joint.attachments import Support
 from faying.microslip import levels
 from faying.microslip.epmc import Epmc
-from faying.microslip.levels import LevelModel
+from faying.microslip.levels import LevelModel, cut_laws, level_basis, level_model
+from faying.microslip.slip_basis import unbalanced_forces
+from tests.helpers.plates import plates, stacked
 from tests.helpers.slips import chain, describing, oscillator, slider
 
 IWAN = np.full(24, 1 / 24), np.geomspace(0.002, 1.0, 24) / 24
@@ -144,3 +149,28 @@ def test_a_mass_that_friction_alone_holds_has_no_answer_above_what_friction_can_
     found = leveled(oscillator(slider(1.0, 0.5), spring=0.0)).at([0.3, 3.0], 1)
     assert found.frequencies[0, 0] > 0
     assert np.isnan([found.frequencies[1, 0], found.damping[1, 0], found.error[1, 0]]).all()
+
+
+def test_the_basis_leaves_little_of_the_full_equations():
+    """Two plates on one bolt of which a mode slips: mean and first harmonic, in energy over that of the motion."""
+    shank = {"diameter": 8e-3, "material": "45 steel", "seat": (0, 14e-3)}
+    bolt = faying.Bolt("b", ("low.bottom", "high.top"), at=(0.03, 0.02, 0), **shank)
+    held = plates(stacked(counts=(6, 3, 1)), bolts=[bolt], friction=0.1, supports=[Support(face="low.left")])
+    state = held.solve(3e3, modes=3)
+    laws = cut_laws(held, state.preload, [0.1], 12)
+    basis = level_basis(held, state.preload, state.vibration, [laws], np.full(2, 30.0))
+    model = level_model(held, state.preload, basis, laws)
+    for mode in (0, 1):
+        cycle = model.up_to(30.0, mode)
+        assert cycle.damping > 1e-3
+        left = unbalanced_forces(
+            held,
+            model.vectors,
+            model.slip.joints,
+            motion=cycle.motion[:3],
+            traction=[traction[:3] for traction in cycle.traction],
+            speed=2 * np.pi * cycle.frequency,
+            damping=cycle.damping,
+        )
+        energy = np.einsum("ij,ij->j", left, splu(state.vibration.stiffness.tocsc()).solve(left))
+        assert np.all(energy < 0.003**2 * (cycle.motion[1] @ model.slip.linear @ cycle.motion[1]))

@@ -52,6 +52,14 @@ def test_twins_are_followed_as_a_plane():
     assert may_cross(before, np.array([90.0, 105.0, 105.001]))
 
 
+def test_twins_are_followed_by_all_that_lies_in_their_plane():
+    """They turn by 45 degrees and a tenth of each leaves the plane: neither has half of one, both have 0.9 of it."""
+    c, s = np.sqrt(0.45), np.sqrt(0.1)
+    first, second, other = (c, c, 0, s, 0, 0), (c, -c, 0, 0, s, 0), (0, 0, 0, 0, 0, 1)
+    after = np.array([other, first, second]).T  # the third left, another one is the lowest now
+    assert follow(np.eye(6)[:, :3], after, np.eye(6), np.array([100.0, 100.001, 130.0])).tolist() == [1, 2, 0]
+
+
 def test_a_mode_that_left_the_range_takes_the_place_that_is_left():
     other = np.eye(4)[:, [0, 1, 3]]  # the third shape is gone, a new one came
     assert list(follow(np.eye(4)[:, :3], other, np.eye(4), np.array([1.0, 2.0, 3.0]))) == [0, 1, 2]

@@ -178,6 +178,13 @@ def test_conjugate_gradients_reach_their_accuracy_for_every_right_hand_side(bars
         conjugate_gradients(lambda x: A @ x, factor, right, accuracy=1e-14, limit=2)
 
 
+def test_a_right_hand_side_that_is_no_number_has_no_solution():
+    """Not 0, from which the iteration begins."""
+    one = sp.eye_array(3).tocsc()
+    with pytest.raises(NotConverged, match="residual stays"):
+        conjugate_gradients(lambda x: one @ x, factorise(one), np.full((3, 1), np.nan), accuracy=1e-8)
+
+
 def test_conjugate_gradients_begin_with_the_best_of_like_solutions(bars):
     """With the solution among them nothing is left to do; with those of nearby springs little is."""
     K, M = sprung(bars, 1e13, 5e12)

@@ -30,6 +30,13 @@ def test_columns_are_orthonormal_with_the_basis_and_span_what_was_given():
     np.testing.assert_allclose(both @ (both.T @ (MASS @ given)), given, atol=1e-9)
 
 
+def test_what_is_hardly_new_is_orthogonal_to_the_basis_as_well():
+    """A millionth beside the basis: one projection leaves rounding of 1e-16, which is 1e-10 of it."""
+    first, image = extension(drawn(3), np.zeros((N, 0)), np.zeros((N, 0)), MASS)
+    new, _ = extension(first.sum(axis=1, keepdims=True) + 1e-6 * drawn(1, seed=4), first, image, MASS)
+    assert np.abs(first.T @ (MASS @ new)).max() < 1e-14
+
+
 def test_what_is_there_already_adds_nothing_and_half_of_it_adds_half():
     first, image = extension(drawn(3), np.zeros((N, 0)), np.zeros((N, 0)), MASS)
     again, _ = extension(first @ drawn(3)[:3], first, image, MASS, least=1e-20)

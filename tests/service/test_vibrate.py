@@ -9,6 +9,7 @@ from scipy.integrate import quad
 from scipy.linalg import eigh, solve
 
 import faying
+from faying.bolt.fatigue import FatigueCurve, dirlik
 from faying.case.level_damping import rest_damping
 from faying.fe.stress import part_stresses
 from faying.joint.attachments import Support
@@ -196,6 +197,15 @@ def test_a_sweep_that_is_slow_has_the_peak_of_its_mode(state):
     k = int(np.argmax(found.level[1]))
     exact = 1e-3 * abs(excited.force[k]) * excited.greatest[k] / (2 * found.damping[1, k])
     assert found.level[1, k] == pytest.approx(exact, rel=1e-3)
+
+
+def test_damage_far_below_the_first_mode_is_that_of_a_band_of_even_density(state):
+    """Where the stress follows its input, the moments of its spectrum are those of a rectangle."""
+    low, high = 0.5, 0.002 * state.frequencies[0]
+    (found,) = faying.vibration(state, [noise(100.0, (low, high), direction=(0, 0, 1), duration=1.0)])
+    powers = np.array([0, 1, 2, 4]) + 1
+    moments = found.stress[1, 0] ** 2 * (high**powers - low**powers) / powers / (high - low)
+    assert found.damage[1, 0] / dirlik(FatigueCurve.vdi(8e-3), moments) == pytest.approx(1, rel=1e-3)
 
 
 def test_damage_of_a_duration_and_the_life_agree(state):

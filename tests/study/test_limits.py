@@ -46,6 +46,7 @@ END = 'point = ["0 mm", "0 mm", "0 mm"]\ndirection = {}\n'
         (TEXT + MATERIAL.format("200 GPa", "7800 Gg/m^3", "0.2"), '"7800 Gg/m^3" is beyond'),
         (changed('"1 kN"', '"1e-300 kN"'), '"1e-300 kN" is beyond what a bolted structure has, 1 uN to 10 GN'),
         (changed('"1 kN"', '"1e9 kN"'), '"1e9 kN" is beyond'),
+        (TEXT + TEST.format("100 Hz").replace("[[\"0 mm", "[[\"-20 km"), '"-20 km" is beyond'),
         (TEXT + TEST.format("1e308 Hz"), 'frequencies = "1e308 Hz" is beyond'),
         (TEXT + TEST.format('9 kHz", "3 Hz').replace('"100', '"9 Hz", "100'), "3 Hz stands after 9000 Hz"),
         (TEXT + TEST.format("1 kHz") + "threshold = 1e30\n", "threshold = 1e+30 should be a plain number from 0 to 1"),

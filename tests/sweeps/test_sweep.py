@@ -386,3 +386,11 @@ def test_each_number_that_varies_acts_and_is_not_taken_for_another_value(plan, k
     assert found[0] != found[1]
     for index, mine in zip((0, 1, 0), found, strict=True):
         assert mine == acting(VariantBuilder(design=grid, pairs=(PAIR,)), index)
+
+
+def test_a_part_of_twice_the_mass_has_the_waves_of_one_of_half_the_stiffness():
+    """E over the density says how fast they run."""
+    steel = PAIR[0]
+    for name, factor in (("mass", 2.0), ("stiffness", 0.5)):
+        changed = varied(f"part.a.{name}").put(steel, factor)
+        assert changed.E / changed.density == pytest.approx(0.5 * steel.E / steel.density)
