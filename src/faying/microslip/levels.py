@@ -31,7 +31,7 @@ from faying.numerics.solve import conjugate_gradients
 from faying.numerics.span import Span
 from faying.typing import Array
 
-PASSES = 24  # harmonic balance costs as much as the next ten, and settles more
+PASSES = 40
 HALF = 0.5  # of a change of secants under which the mode would soften too much, and of the first change of the lag
 # share of a change of secants and lag from the third pass on, by Aitken's rule: undamped, the two drive each other away
 # from the answer where most of a joint slides, and damped by a half alone they take twice as many passes

@@ -149,9 +149,9 @@ def _march(
         cycle = model.passes(level, mode)
     while level > 0 and np.isfinite(cycle.frequency):
         point = _point(cycle, moved)
-        if _bends([*points, point], curve.rest) and cycle.level >= level and step > FINEST_STEP:
-            ahead, level = cycle, level / step
-            step = np.sqrt(step)
+        if last is not None and _bends([*points, point], curve.rest) and step > FINEST_STEP:
+            ahead, step = cycle, np.sqrt(step)
+            level = np.sqrt(last.level * cycle.level)
         else:
             new = [cycle]
             if ahead is not None and _is_between(points[-1], point, _point(ahead, moved)):
@@ -162,21 +162,22 @@ def _march(
                     curve = _through(curve, points)
                     if point[0] >= needs(curve):
                         return curve, False
-            if cycle.level < level:
-                break
             ahead, last = None, new[-1]
-            level = last.level
+            level = last.level * step
             step = min(longest, step**LONGER)
-        level *= step
         settles = settles and (cycle := model.passes(level, mode)).converged
         if not settles and last is not None:
-            found = model.balanced(last, level, mode) if last.converged else cycle
-            cycle = found if found.level >= level else max(found, model.passes(level, mode), key=_reach)
+            cycle = _beyond(model, level, mode, last)
     return curve, level > 0
 
 
-def _reach(cycle: LevelCycle) -> float:
-    return cycle.level if np.isfinite(cycle.frequency) else 0.0
+def _beyond(model: LevelModel, level: float, mode: int, last: LevelCycle) -> LevelCycle:
+    """The next cycle where passes do not settle: as far as harmonic balance gets, else by passes a little farther."""
+    if last.converged:
+        found = model.balanced(last, level, mode)
+        if found.level > FINEST_STEP**0.25 * last.level:
+            return found
+    return model.passes(min(level, FINEST_STEP * last.level), mode)
 
 
 def _point(cycle: LevelCycle, moved: float) -> tuple[float, float, float]:
@@ -191,7 +192,7 @@ def _through(curve: ModeCurve, points: Sequence[tuple[float, float, float]]) -> 
 
 def _is_between(low: tuple[float, ...], point: tuple[float, ...], high: tuple[float, ...]) -> bool:
     """Whether the slip of a point is a power of the amplitude between two others, to `SMOOTH`."""
-    x, _, y = np.log(np.array([low, point, high]).T)
+    x, y = np.log([(a, max(slip, LEAST_SLIP)) for a, _, slip in (low, point, high)]).T
     return bool(abs(np.interp(x[1], x[::2], y[::2]) - y[1]) < SMOOTH)
 
 
