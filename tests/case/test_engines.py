@@ -26,9 +26,6 @@ ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted(
     p.relative_to(ROOT) for p in (ROOT / "examples").rglob("*.toml") if p.stem not in ("uncertain", "laws-evidence")
 )
-OFF = {
-    "t-specimen": pytest.mark.xfail(reason="at 8 kN, between the loads trained on, offsets of waves are 8e-4 apart"),
-}
 by_parts = pytest.mark.skipif("pardiso" not in available(), reason="only PARDISO factorises part by part")
 
 
@@ -78,48 +75,49 @@ ESTIMATES = {"mesh_error": 5e-3, "error": 0.1}
 TOLERANCES = ESTIMATES | {"loss_factors": 1e-6, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
 RESPONSE = 2 * SHAPES["shapes"]  # of its greatest value; two shapes are in each term
 FREQUENCY, DAMPING = 1e-8, 1e-2
-# intervals and draws of waves, each in a small basis of its own, which is half as good at loads not trained on
-IN_A_BASIS = 4 * changed.TOLERANCE
+# intervals and draws of waves, each in a small basis of its own: at the first and the last load, and between them
+IN_A_BASIS, BETWEEN = 4 * changed.TOLERANCE, changed.BETWEEN
 NO_SLIP = 1e-7  # damping ratio of modes that do not slip
 
 
-def agree(one, other, prefix="", span=1.0):
+def agree(one, other, prefix="", span=1.0, in_a_basis=IN_A_BASIS):
     """Every field of the results of two engines, each to what it is solved to; span: of the preloads [N]."""
     prefix = "level_" if isinstance(one, VibrationResponse) else prefix
-    span = max(np.ptp(one.loads), 1.0) if isinstance(one, Result) else span
+    if isinstance(one, Result):
+        span, in_a_basis = max(np.ptp(one.loads), 1.0), IN_A_BASIS if len(one.loads) < 3 else BETWEEN
     for field in fields(one):
         name, a, b = prefix + field.name, getattr(one, field.name), getattr(other, field.name)
         if GROUP in field.metadata and b is not None:
-            agree(a, b, f"{field.metadata[GROUP]}_", span)
+            agree(a, b, f"{field.metadata[GROUP]}_", span, in_a_basis)
         elif name == "level_error":
             slips = one.slip > NO_SLIP  # else it is the error of nothing
             assert a[slips] == pytest.approx(b[slips], abs=DAMPING, nan_ok=True)
         elif name == "wave_slopes" and b is not None:
             # differences of frequencies, each to what it is found to
-            most = 2 * IN_A_BASIS * np.nanmax(other.frequencies) / span
+            most = 2 * in_a_basis * np.nanmax(other.frequencies) / span
             assert a == pytest.approx(b, abs=most, nan_ok=True)
         elif field.name not in OWN:
-            alike(name, a, b)
+            alike(name, a, b, in_a_basis)
 
 
-def alike(name, a, b):
+def alike(name, a, b, in_a_basis):
     """One field."""
     if is_dataclass(b):
         agree(a, b)
     elif isinstance(b, tuple):
         for mine, theirs in zip(a, b, strict=True):
-            alike(name, mine, theirs)
+            alike(name, mine, theirs, in_a_basis)
     elif not (isinstance(b, np.ndarray) and b.dtype.kind in "fc"):
         assert np.array_equal(a, b) if isinstance(b, np.ndarray) else a == b, name
     elif b.dtype.kind == "c":
         assert a == pytest.approx(b, abs=RESPONSE * float(np.abs(b).max(initial=0.0)), nan_ok=True), name
     elif name.startswith(("interval", "wave")):
-        assert a == pytest.approx(b, rel=IN_A_BASIS, abs=IN_A_BASIS, nan_ok=True), name
+        assert a == pytest.approx(b, rel=in_a_basis, abs=in_a_basis, nan_ok=True), name
     elif name.startswith("level_") and name != "level_frequencies":
         assert a == pytest.approx(b, rel=DAMPING, abs=NO_SLIP, nan_ok=True), name
     else:
         rel = SHAPES.get(name) or TOLERANCES.get(name.removeprefix("alternative_"), FREQUENCY)
-        least = rel if name in SHAPES else 1e-7
+        least = rel if name in SHAPES or "loss" in name else 1e-7
         assert a == pytest.approx(b, rel=rel, abs=least * float(np.nanmax(np.abs(b), initial=1e-3)), nan_ok=True), name
 
 
@@ -133,9 +131,10 @@ def test_damping_at_levels_does_not_depend_on_what_else_is_asked_for(study, plen
     first = replace(study.preloads[0], forces=(4e3,))
     among = replace(study, preloads=(first, *study.preloads), modes=replace(study.modes, intervals=True))
     one, more = plenty, run(among)
-    assert more.levels.slip[-1] == pytest.approx(one.levels.slip[0], rel=5e-3, abs=NO_SLIP)
-    # at the least friction most of the joint slides, and points that open and close move the passes by 2 %
-    assert more.levels.high[-1] == pytest.approx(one.levels.high[0], rel=0.03, abs=NO_SLIP)
+    # equilibrium from another start is off by rounding, of which the passes make 6e-4
+    for name in ("slip", "low", "high"):
+        found, alone = getattr(more.levels, name)[-1], getattr(one.levels, name)[0]
+        assert found == pytest.approx(alone, rel=1e-3, abs=NO_SLIP)
 
 
 @pytest.mark.slow
@@ -147,10 +146,9 @@ def test_a_joint_that_slips_has_one_answer(study):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("example", [pytest.param(p, marks=OFF.get(p.parts[1], ()), id=str(p)) for p in EXAMPLES])
+@pytest.mark.parametrize("example", EXAMPLES, ids=str)
 def test_every_example_has_one_answer(example, tmp_path):
     study = Study.read(copied(ROOT / example, tmp_path / "examples"))
-    study = replace(study, modes=replace(study.modes, levels=()))  # half of the time; those of two blocks are above
     agree(run(study), run(study, engine="direct"))
 
 

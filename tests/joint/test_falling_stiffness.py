@@ -5,16 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import faying
 from faying.case.case import Case
 from faying.case.engine import engine_of
 from faying.contact import PowerLaw, TabulatedLaw
 from faying.contact.build import kinds
+from faying.contact.models.half_space import HalfSpace
+from faying.fe.interface import join
+from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.preload_case import PreloadCase
+from faying.joint.structure import Structure
 from faying.study import Study
 from tests.contact.test_python_first import MATES
 from tests.helpers import studies
 from tests.helpers.laws import Given
+from tests.helpers.plates import STEEL, stacked
+from tests.helpers.rings import discs
 
 # first points scatter, as those of a scan of which few spots touch: k falls with rising pressure from 16 to 50 kPa
 SCATTERED = "pressure [kPa],k_n [MPa/um]\n16,0.34\n50,0.3\n100,0.8\n300,1.9\n1000,6\n100000,400\n"
@@ -42,7 +49,8 @@ def rises(values, tolerance):
 def falls_to_nothing(law):
     """k_n, k_t and k_load from the end of a law down to 1e-12 of it, and at 0.
 
-    GW-JG and GW-ZMC have a k_n of their own that falls by 3e-4; k_load of solved contacts scatters where spots merge.
+    GW-JG and GW-ZMC have a k_n of their own that falls by 3e-4. k_load of a solved contact, the slope between
+    solved pressures, scatters by 6 % of so small a map. Near its end it falls: spots that carry the hardness flow.
     """
     end, least = law.model.greatest_pressure, law.least_pressure
     p = np.unique(np.concatenate([end * np.geomspace(1e-12, 1, 2000), least * (1 + np.array([-1e-9, 0, 1e-9]))]))
@@ -57,7 +65,9 @@ def falls_to_nothing(law):
         assert np.all(np.diff(k[p < least]) > 0)
         assert k[0] < 1e-2 * k[-1]
     assert rises(k_load[p[::50] <= least], 0.0) if np.any(p[::50] <= least) else True
-    assert np.all(k_load >= 0.7 * np.maximum.accumulate(k_load))
+    solved = isinstance(law.model, HalfSpace)
+    k_load = k_load[pressure < end / 10] if solved else k_load
+    assert np.all(k_load >= (1 - (0.06 if solved else 1e-6)) * np.maximum.accumulate(k_load))
     assert np.array_equal(np.concatenate(law.stiffness(np.zeros(3))), np.zeros(6))
     assert np.array_equal(np.concatenate(law.pressure(np.array([-1e-9, 0.0]))), np.zeros(4))
 
@@ -109,6 +119,25 @@ def frequencies(tmp_path, loads):
     return np.array(out)
 
 
+def of_two(mesh, preloads, law, hole=0.0, crown=0.0):
+    """Two frequencies (n, 2) [Hz] of two parts under rising preloads [N] of a bolt; crown: gap at 10 mm from it [m]."""
+    faces, seats = ("low.top", "high.bottom"), ("low.bottom", "high.top")
+    joint = FittedJoint(name="j", faces=faces, interface=join(mesh, *faces), law=law)
+    middle = mesh.points[mesh.face_nodes(faces[0])].mean(axis=0)
+    away = np.linalg.norm(joint.interface.positions - middle, axis=1) / 10e-3
+    joint = replace(joint, interface=replace(joint.interface, gap=crown * away**2))
+    structure = Structure(
+        mesh=mesh,
+        materials=dict.fromkeys(mesh.parts, STEEL),
+        joints=(joint,),
+        bolts=(faying.Bolt("b", seats, at=tuple(middle), seat=(hole, 18e-3)),),
+    )
+    states = [structure.solve(preload=float(load), modes=2) for load in preloads]
+    shut = [joint.interface.weights @ (s.preload.pressures[0] > 0) / joint.interface.area for s in states]
+    assert 0.02 < min(shut) <= max(shut) < 0.98
+    return np.array([state.frequencies for state in states])
+
+
 def off_cubic(values):
     """Relative distance of each value (n, m), evenly spaced, from the cubic through its two neighbours on each side."""
     cubic = (-values[:-4] + 4 * values[1:-3] + 4 * values[3:-1] - values[4:]) / 6
@@ -119,3 +148,17 @@ def off_cubic(values):
 def test_frequencies_move_smoothly_with_the_preload(count, tmp_path):
     """Points at the rim come to touch one after another."""
     assert np.all(off_cubic(frequencies(tmp_path, 9.2e3 + 25.0 * np.arange(count))) < 1e-5)
+
+
+@pytest.mark.parametrize("count", [9, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["plates", "crowned discs"])
+def test_frequencies_of_parts_that_lift_off_are_smooth(name, count, tmp_path):
+    """Plates that lift off at both ends, and discs that touch over more and more of a crown."""
+    loads = 4e3 + 10.0 * np.arange(count)
+    if name == "plates":
+        mesh = stacked(counts=(20, 6, 1), size=(0.12, 0.04, 0.01))
+        found = of_two(mesh, loads, JointLaw(model=table(tmp_path)))
+    else:
+        mesh = discs(np.linspace(4e-3, 20e-3, 9), 16, [0.0, 10e-3])
+        found = of_two(mesh, loads, JointLaw(model=MATES.law("gw")), hole=8e-3, crown=1e-6)
+    assert np.all(off_cubic(found) < 1e-5)

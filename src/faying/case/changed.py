@@ -14,8 +14,8 @@ from faying.reduction.reduce import Gapped, Reduction
 from faying.reduction.reduced import Variant
 from faying.typing import Array, Index
 
-# of a frequency at the loads trained on, where what is changed moves one by a thousandth and more; between them, 1e-3
-TOLERANCE = 1e-4
+# of a frequency at the loads trained on, where what is changed moves one by a thousandth and more; and between them
+TOLERANCE, BETWEEN = 1e-4, 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
