@@ -66,12 +66,11 @@ def study_in(folder, loads=LOADS):
 def ours(folder):
     """Preloads and modes at three loads, as `faying run` solves them."""
     from faying.case.case import Case, Progress
-    from faying.case.engine import engine_of
     from faying.case.solve import solve
 
     begin = time.process_time()
     case = Case.of(study_in(folder))
-    engine = engine_of("reanalysis", case)
+    engine = case.engine("reanalysis")
     states = [solve(case, k, engine, Progress(0), ranges=False) for k in range(len(LOADS))]
     return {
         "cpu": time.process_time() - begin,

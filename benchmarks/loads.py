@@ -56,7 +56,6 @@ def timed(work):
 
 def main():
     from faying.case.case import Case, Progress
-    from faying.case.engine import engine_of
     from faying.loads import solve
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -68,9 +67,9 @@ def main():
         bare = replace(plan, modes=replace(plan.modes, levels=(), intervals=False))
         case = Case.of(bare)
         case.structure.dynamic_matrices, case.structure.loads  # noqa: B018  # assembled before the clock runs
-        engine_of("reanalysis", case).preload(0)  # libraries, and the table of the law
-        state, first = timed(lambda case=case: engine_of("reanalysis", case).preload(0))
-        engine = engine_of("reanalysis", case)
+        case.engine("reanalysis").preload(0)  # libraries, and the table of the law
+        state, first = timed(lambda case=case: case.engine("reanalysis").preload(0))
+        engine = case.engine("reanalysis")
         _, second = timed(lambda engine=engine: engine.preload(0))
 
         springs = case.structure.springs(state.pressures)

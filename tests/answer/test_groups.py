@@ -14,7 +14,6 @@ from faying.answer.interval import Draws, _laws, intervals
 from faying.case.bounds import bounds
 from faying.case.case import Case, Progress
 from faying.case.changed import ChangedCase, frequencies_of
-from faying.case.engine import engine_of
 from faying.case.mesh_error import mesh_error
 from faying.case.scatter import known_of
 from faying.case.solve import solve
@@ -92,7 +91,7 @@ def prepared(folder, name, fine=False):
     more = [one.format(k=k, force=5.0 / joints) for one in (JOINT, BOLT) for k in range(joints)]
     (folder / "study.toml").write_text(STUDY.replace("[modes]", "\n".join(more) + "[modes]"))
     case = Case.of(faying.Study.read(folder / "study.toml"))
-    return name, case, [solve(case, 0, engine_of("reanalysis", case), Progress(1))], turns
+    return name, case, [solve(case, 0, case.engine("reanalysis"), Progress(1))], turns
 
 
 def around(case, shapes, turns):
@@ -122,7 +121,7 @@ def shapes_of(case, state):
 def solved_with(case, **changes):
     """The state of a case with other joints, in full."""
     changed = replace(case, structure=case.structure.with_joints(**changes))
-    return solve(changed, 0, engine_of("direct", changed), Progress(1))
+    return solve(changed, 0, changed.engine("direct"), Progress(1))
 
 
 @pytest.fixture(scope="module", params=sorted(MADE))

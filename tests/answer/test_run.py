@@ -180,7 +180,6 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     study, monkeypatch, changes, count
 ):
     from faying.case.case import Case, Progress
-    from faying.case.engine import engine_of
     from faying.case.solve import solve
     from faying.joint import preload
     from faying.numerics import modal_reanalysis
@@ -193,7 +192,7 @@ def test_the_modes_take_the_factorisation_of_the_preload_where_it_is_of_what_vib
     case = Case.of(study)
     case = replace(case, structure=replace(case.structure, **changes))
     structure = case.structure
-    state = solve(case, 0, engine_of("reanalysis", case), Progress(0), ranges=False)
+    state = solve(case, 0, case.engine("reanalysis"), Progress(0), ranges=False)
     assert sum(matrix.shape[0] == structure.mesh.unknowns for matrix in made) == count
     K, _ = structure.coupled(state.springs)
     exact = lowest_modes(K, structure.dynamic_matrices[1], case.modal.mode_count, shift_frequency=case.shift_frequency)
@@ -207,14 +206,13 @@ def test_any_continuation_beyond_the_law_lies_in_the_bracket(study, factor):
     """The springs beyond the law made stiffer by any factor: each frequency stays between held and bonded."""
     from faying.case.above_range import bonded_above_range
     from faying.case.case import Case, Progress
-    from faying.case.engine import engine_of
     from faying.case.solve import solve
     from faying.numerics.modes import lowest_modes
 
     small = replace(pulled(study, 5e5), modes=ModesChoice(count=4))
     case = Case.of(small)
     structure = case.structure
-    state = solve(case, 0, engine_of("reanalysis", case), Progress(0))
+    state = solve(case, 0, case.engine("reanalysis"), Progress(0))
     springs = state.springs[0]
     past = springs.pressure > structure.joints[0].law.model.greatest_pressure
     assert 0 < past.mean() < 1

@@ -12,7 +12,6 @@ from faying.answer.interval import elastic_modes, intervals
 from faying.answer.run import run
 from faying.case.bounds import bounds
 from faying.case.case import Case, Progress
-from faying.case.engine import engine_of
 from faying.case.part_tests import BALANCE_SD, LEAST_SD, KnownParts, PartAlone, PartFactors, energy_shares, same_modes
 from faying.case.solve import solve
 from faying.distribution import Distribution
@@ -68,7 +67,7 @@ def assembly(tmp_path_factory):
     (folder / "model.inp").write_text(abaqus(stacked(counts=(8, 2, 1), size=(0.12, 0.03, 0.01))))
     (folder / "study.toml").write_text(STUDY)
     case = Case.of(faying.Study.read(folder / "study.toml"))
-    states = [solve(case, 0, engine_of("reanalysis", case), Progress(1))]
+    states = [solve(case, 0, case.engine("reanalysis"), Progress(1))]
     return case, states, intervals(case, states, None)[1], bounds(case)[0]
 
 

@@ -46,13 +46,12 @@ def twin(plan, truth=TRUTH, seed=3, model=None):
         test=None,
     )
     from faying.case.case import Case, Progress
-    from faying.case.engine import engine_of
     from faying.case.solve import solve
 
     case = Case.of(other)
     joints = tuple(replace(j, law=replace(j.law, scale=truth["stiffness"])) for j in case.structure.joints)
     case = replace(case, structure=replace(case.structure, joints=joints))
-    engine = engine_of("reanalysis", case)
+    engine = case.engine("reanalysis")
     states = [solve(case, k, engine, Progress(0)) for k in range(len(plan.loads))]
     truth = np.stack([s.damped.frequencies for s in states])
     noise = np.random.default_rng(seed).normal(0, 1e-3, truth.shape)

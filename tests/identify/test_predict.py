@@ -11,7 +11,6 @@ import xarray
 import faying
 from faying.answer.run import run
 from faying.case.case import Case, Progress
-from faying.case.engine import engine_of
 from faying.case.mesh_error import mesh_error
 from faying.case.solve import solve
 from faying.distribution import Distribution
@@ -76,7 +75,7 @@ def test_scales_of_the_parts_scale_every_frequency_of_bonded_like_parts(tmp_path
 def nominal(plan):
     """The case of the medians, solved in full: its frequencies and the error of its mesh."""
     case = Case.of(replace(plan, uncertain=None))
-    engine = engine_of("direct", case)
+    engine = case.engine("direct")
     states = [solve(case, k, engine, Progress(0)) for k in range(len(plan.loads))]
     return np.stack([one.damped.frequencies for one in states]), mesh_error(case, states)
 

@@ -7,7 +7,6 @@ import pytest
 
 import faying
 from faying.case.case import Case
-from faying.case.engine import engine_of
 from faying.contact import PowerLaw, TabulatedLaw
 from faying.contact.build import kinds
 from faying.contact.models.half_space import HalfSpace
@@ -109,7 +108,7 @@ def frequencies(tmp_path, loads):
         preloads=tuple(PreloadCase(forces=(float(load),)) for load in loads),
     )
     case = Case.of(study)
-    engine, joint = engine_of("reanalysis", case), case.structure.joints[0]
+    engine, joint = case.engine("reanalysis"), case.structure.joints[0]
     out = []
     for k in range(len(loads)):
         preload = engine.preload(k)

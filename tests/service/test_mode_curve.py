@@ -8,8 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 from faying.microslip.levels import LevelModel
-from faying.service.mode_curve import ModeCurve
-from faying.service.spectra import resonance, rule, variance
+from faying.service.mode_curve import ModeCurve, resonance, rule, variance
 from faying.study.vibration import InputTable
 from tests.helpers.shaken import integrated
 from tests.helpers.slips import chain, describing, oscillator, slider

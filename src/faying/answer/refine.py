@@ -60,9 +60,8 @@ def refined(study: Study, tolerance: float, run: Callable[[Study], Result]) -> R
         f"elements of {1e3 * study.geometry.size:.3g} mm, and {count} mesh{'es' * (count > 1)}, for --refine: the "
         f"estimated error of the mesh {words} {100 * error:.2g} % at most, where {100 * tolerance:.2g} % was asked"
     )
-    note = Note(code="mesh-refined", text=text)
-    if error > tolerance:
-        note = Note(code="mesh-error", severity="limit", text=text)
+    fine = Note(code="mesh-refined", text=text)
+    note = fine if error <= tolerance else Note(code="mesh-error", severity="limit", text=text)
     return replace(result, notes=(*result.notes, note))
 
 

@@ -17,7 +17,6 @@ from faying.bolt.bolt import FittedBolt
 from faying.case.alternative import Alternative, of_alternatives, solve_alternative
 from faying.case.bounds import Bounds, bounds
 from faying.case.case import Case, Progress
-from faying.case.engine import engine_of
 from faying.case.level_damping import level_notes
 from faying.case.mesh_error import mesh_error, mesh_notes
 from faying.case.provenance import provenance
@@ -74,7 +73,7 @@ def run(
         friction_of(study, study.backbone)  # raises, before the work, where nothing can slip
     progress = Progress(len(stages(study)), report)
     case = Case.of(study, progress)
-    solver = engine_of(engine, case)
+    solver = case.engine(engine)
     states = [solve(case, number, solver, progress) for number in range(len(study.loads))]
     vibrations: list[VibrationResponse] = []
     for state, load in zip(states, study.preloads, strict=True) if study.vibrations else ():

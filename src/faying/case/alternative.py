@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from faying.case.case import Case, Progress, interface_of, joint_law, law_reasons, materials_at, surfaces_of
-from faying.case.engine import engine_of
 from faying.case.solve import LoadedCase, released, solve
 from faying.errors import FayingError
 from faying.notes import OF_ALTERNATIVE, Note
@@ -43,7 +42,7 @@ def solve_alternative(case: Case, choice: AlternativeChoice, engine: str, progre
     done = progress.done
     try:
         other = changed(case, choice)
-        solver, loads = engine_of(engine, other), range(len(case.study.loads))
+        solver, loads = other.engine(engine), range(len(case.study.loads))
         states = tuple(released(solve(other, k, solver, progress, ranges=False)) for k in loads)
     except FayingError as fault:
         progress.done = done + 2 * len(case.study.loads)

@@ -21,7 +21,8 @@ from faying.joint.bolted import loose_parts
 from faying.joint.equilibrium import PreloadState
 from faying.joint.joint import FittedJoint, with_form
 from faying.joint.joint_law import JointLaw
-from faying.joint.modal import ModalProblem
+from faying.joint.modal import Engine, ModalProblem
+from faying.joint.state import engine_for
 from faying.joint.strength import bolt_notes, material_notes
 from faying.joint.structure import Structure
 from faying.materials import Material
@@ -146,6 +147,10 @@ class Case:
     def modal(self) -> ModalProblem:
         """What is asked about the modes."""
         return ModalProblem(structure=self.structure, choice=self.study.modes)
+
+    def engine(self, name: str) -> Engine:
+        """The engine of a name. Raises InputError for another name than `ENGINES` has."""
+        return engine_for(name, self.modal, self.study.preloads)
 
 
 def law_reasons(structure: Structure, surfaces: tuple[Surface, ...]) -> list[Note]:

@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from faying.case.above_range import AboveRange, bonded_above_range
 from faying.case.case import Case, Progress
-from faying.case.ends import Pair, ends_of
-from faying.case.engine import Engine
 from faying.case.level_damping import level_damping
 from faying.case.response import LoadedStructure, ResponseAtLoad
 from faying.fe.interface import Interface
 from faying.joint.equilibrium import PreloadState
+from faying.joint.modal import Engine
 from faying.joint.springs import Springs
 from faying.joint.state import law_notes
 from faying.joint.strength import pressure_notes
@@ -22,6 +22,8 @@ from faying.numerics.modes import Modes
 from faying.numerics.solve import Released
 from faying.result.groups import Levels
 from faying.typing import Array, Mask
+
+Pair = tuple[Array, Array]  # frequencies [Hz] at both ends of one number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +92,7 @@ def solve(case: Case, number: int, engine: Engine, progress: Progress, *, ranges
     above_range = bonded_above_range(case, load, springs, found.damped)
     return LoadedCase(
         load=load,
-        ends=ends_of(case, preload, engine, found.modes) if ranges else None,
+        ends=_ends_of(case, preload, engine, found.modes) if ranges else None,
         levels=level_damping(case, preload, found) if ranges else None,
         preload=preload,
         springs=springs,
@@ -150,3 +152,26 @@ def _outside(structure: Structure, springs: Sequence[Springs[Interface]]) -> flo
         outside += float(stiffness @ ~joint.law.answer(s.pressure).valid)
         total += float(stiffness.sum())
     return outside / total if total > 0 else 0.0
+
+
+def _ends_of(case: Case, preload: PreloadState, engine: Engine, modes: Modes) -> dict[str, Pair]:
+    """Frequencies of one load at 5 and at 95 % of the range of the law that the scan makes.
+
+    modes: at this load, whose order the frequencies have. "contact": with each half of the points of the joints, for
+    the error of the mesh.
+    """
+    joints, out = case.structure.joints, {}
+
+    def at(end: Literal["low", "high"]) -> Array:
+        laws = [replace(joint.law, end=end) if joint.law.has_range else joint.law for joint in joints]
+        springs = case.structure.with_joints(laws=laws).springs(preload.pressures)
+        return engine.frequencies(springs, modes, one_way=True)
+
+    if any(joint.law.has_range for joint in joints):
+        out["scan"] = at("low"), at("high")
+    if case.study.modes.intervals and not any(joint.per_node for joint in joints):
+        springs = case.structure.springs(preload.pressures)
+        halves = ([one.half(which) for one in springs] for which in (0, 1))
+        first, second = (engine.frequencies(half, modes, one_way=False) for half in halves)
+        out["contact"] = first, second
+    return out

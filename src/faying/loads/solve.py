@@ -8,7 +8,6 @@ import numpy as np
 
 from faying.case.acting import Acting, acting, nothing
 from faying.case.case import Case, Progress, bare
-from faying.case.engine import Engine, engine_of
 from faying.case.provenance import provenance
 from faying.case.service_bolts import ServiceBolt, head_frictions, service_bolts
 from faying.errors import InputError
@@ -16,7 +15,7 @@ from faying.fe.stress import greatest_stresses, part_stresses
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.load_path import LoadPaths
-from faying.joint.modal import ModalProblem, ModesChoice
+from faying.joint.modal import Engine, ModalProblem, ModesChoice
 from faying.joint.preload_case import PreloadCase
 from faying.joint.shared_modes import SharedModes
 from faying.joint.springs import Springs
@@ -70,7 +69,7 @@ class Preloaded:
 def preloaded(study: Study, number: int, progress: Progress, *, modes: bool) -> Preloaded:
     """Solve a study at one of its preloads, counted from 0."""
     case = Case.of(bare(study), progress)
-    engine = engine_of("reanalysis", case)
+    engine = case.engine("reanalysis")
     progress.begin(f"preload {study.preloads[number].name}")
     state = engine.preload(number)
     case = case.under(state)

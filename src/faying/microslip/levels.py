@@ -95,11 +95,10 @@ class LevelCycle:
         frequency: [Hz]; NaN, as damping and error, where there is no answer.
         damping: ratio of slip [-].
         error: of the damping, over it [-].
-        change: of the damping in the last pass, or what a balance leaves of it, over it [-]: a part of the error.
+        change: of the damping in the last pass, over it [-]: a part of the error; none of a balance.
         motion: Fourier coefficients of the coordinates (1 + 2H, m) [m].
         traction: those of the tractions of each joint (1 + 2H, q, 3) [Pa] under that motion.
         at_rest: whether its joints soften so little that it keeps its motion at rest.
-        balanced: whether harmonic balance found it, as passes did not settle.
     """
 
     level: float
@@ -110,12 +109,11 @@ class LevelCycle:
     motion: Array
     traction: tuple[Array, ...]
     at_rest: bool
-    balanced: bool = False
 
     @property
     def converged(self) -> bool:
         """Whether there is an answer, which passes no longer change."""
-        return bool(np.isfinite(self.frequency)) and (self.balanced or self.change < UNSETTLED)
+        return bool(np.isfinite(self.frequency)) and self.change < UNSETTLED
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,7 +196,7 @@ class LevelModel:
             if before_missed is not None:
                 share = _aitken(share, before_missed, missed)
             lag_share = HALF if before_missed is None else share
-            near = self._follow(motion, forces.force, speed, damping, softened, lag_share) / amplitude
+            near = self._follow(motion, forces.force, speed, softened, lag_share) / amplitude
             least = max(MIN_LEFT * squared, MIN_SQUARED * float(speeds[number]) ** 2)
             found = self._towards(wanted, secants, rest, least=least, share=share)
             if found is None or damping > MAX_DAMPING or not self._mostly_first(motion):
@@ -247,17 +245,16 @@ class LevelModel:
         if len(curve.points) == 1:
             return start
         last = curve.points[-1]
-        change = BALANCE / max(2 * last.damping, BALANCE)
+        left = BALANCE / max(2 * last.damping, BALANCE)
         return LevelCycle(
             level=level if curve.code == "amplitude" else last.level,
             frequency=last.frequency / (2 * np.pi),
             damping=last.damping,
-            error=min(change + self._shape_error(last.frequency, self.rigid + number), 1.0),
-            change=change,
+            error=min(left + self._shape_error(last.frequency, self.rigid + number), 1.0),
+            change=0.0,
             motion=last.coordinates,
             traction=last.traction,
             at_rest=False,
-            balanced=True,
         )
 
     def _towards(
@@ -285,14 +282,14 @@ class LevelModel:
             share *= HALF
         return None
 
-    def _follow(
-        self, motion: Array, force: Array, speed: float, damping: float, softened: tuple[Array, Array], share: float
-    ) -> float:
+    def _follow(self, motion: Array, force: Array, speed: float, softened: tuple[Array, Array], share: float) -> float:
         """Correct a motion in place by what it leaves of its equations: mean, lag and higher harmonics.
+
+        What drives the mode against its damping moves the mode alone, which the correction leaves out.
 
         Args:
             motion, force: of the cycle (1 + 2H, m) [m], [N]; the cosine of the first harmonic stays.
-            speed, damping: circular frequency of the mode [rad/s] and its ratio [-]: negative damping keeps it going.
+            speed: circular frequency of the mode [rad/s].
             softened: circular frequencies [rad/s] (m,) and shapes (m, m) under the secants, in which the lag is found.
             share: of the correction of the lag [-].
 
@@ -304,8 +301,6 @@ class LevelModel:
             driven = (harmonic * speed) ** 2
             rows = [0] if harmonic == 0 else [2] if harmonic == 1 else [2 * harmonic - 1, 2 * harmonic]
             left = force[rows] - driven * motion[rows] @ self.slip.mass
-            if harmonic == 1:
-                left = left + 2 * damping * driven * motion[1:2] @ self.slip.mass
             speeds, shapes = (one[..., self.rigid :] for one in (softened if harmonic == 1 else self.modes))
             stiff = speeds**2 - driven
             # a mode whose own speed is near that of the harmonic is left out

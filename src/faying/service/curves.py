@@ -19,7 +19,6 @@ LOWEST = 0.02  # of the amplitude that a mode would have with the least damping 
 STEP = 2.0  # from level to level: between them a curve of two plateaus is smooth to 1 %
 STEP_AT_ENDS = 4.0  # the same at the ends of friction, where 3 % do
 BEND = 0.5  # change of the power of slip from step to step that asks for smaller ones: between them it is right to 5 %
-SMOOTH = 0.05  # of a slip, by which a point between two others may be off their power
 LONGER = 1.5  # power of a step that the next one may be
 FINEST_STEP = 1.15  # the smallest: two blocks that begin to slide as a whole have 90 times the damping over a step of 2
 NO_SLIP = 0.05  # of the least damping at rest: a mode with less slip at the greatest amplitude has one point there
@@ -134,7 +133,6 @@ def _march(
     points: list[tuple[float, float, float]] = []
     longest = step
     last: LevelCycle | None = None
-    ahead: LevelCycle | None = None  # where the curve bends before it
     settles = True  # where passes do not, they seldom do again above
     top = needs(curve) * scale
     cycle = model.passes(top, mode)
@@ -150,34 +148,22 @@ def _march(
     while level > 0 and np.isfinite(cycle.frequency):
         point = _point(cycle, moved)
         if last is not None and _bends([*points, point], curve.rest) and step > FINEST_STEP:
-            ahead, step = cycle, np.sqrt(step)
-            level = np.sqrt(last.level * cycle.level)
+            level, step = np.sqrt(last.level * cycle.level), np.sqrt(step)
         else:
-            new = [cycle]
-            if ahead is not None and _is_between(points[-1], point, _point(ahead, moved)):
-                new.append(ahead)
-            for point in (_point(one, moved) for one in new):
-                if not points or point[0] > points[-1][0]:  # else its shape changed by more than the level
-                    points.append(point)
-                    curve = _through(curve, points)
-                    if point[0] >= needs(curve):
-                        return curve, False
-            ahead, last = None, new[-1]
-            level = last.level * step
+            if not points or point[0] > points[-1][0]:  # else its shape changed by more than the level
+                points.append(point)
+                curve = _through(curve, points)
+                if point[0] >= needs(curve):
+                    return curve, False
+            last, level = cycle, cycle.level * step
             step = min(longest, step**LONGER)
         settles = settles and (cycle := model.passes(level, mode)).converged
         if not settles and last is not None:
-            cycle = _beyond(model, level, mode, last)
+            # as far as harmonic balance gets, else by passes a little farther
+            found = model.balanced(last, level, mode) if last.converged else last
+            farther = found.level > FINEST_STEP**0.25 * last.level
+            cycle = found if farther else model.passes(min(level, FINEST_STEP * last.level), mode)
     return curve, level > 0
-
-
-def _beyond(model: LevelModel, level: float, mode: int, last: LevelCycle) -> LevelCycle:
-    """The next cycle where passes do not settle: as far as harmonic balance gets, else by passes a little farther."""
-    if last.converged:
-        found = model.balanced(last, level, mode)
-        if found.level > FINEST_STEP**0.25 * last.level:
-            return found
-    return model.passes(min(level, FINEST_STEP * last.level), mode)
 
 
 def _point(cycle: LevelCycle, moved: float) -> tuple[float, float, float]:
@@ -188,12 +174,6 @@ def _point(cycle: LevelCycle, moved: float) -> tuple[float, float, float]:
 def _through(curve: ModeCurve, points: Sequence[tuple[float, float, float]]) -> ModeCurve:
     amplitudes, speeds, slips = np.array(points).T
     return replace(curve, amplitudes=amplitudes, speeds=speeds, slips=slips)
-
-
-def _is_between(low: tuple[float, ...], point: tuple[float, ...], high: tuple[float, ...]) -> bool:
-    """Whether the slip of a point is a power of the amplitude between two others, to `SMOOTH`."""
-    x, y = np.log([(a, max(slip, LEAST_SLIP)) for a, _, slip in (low, point, high)]).T
-    return bool(abs(np.interp(x[1], x[::2], y[::2]) - y[1]) < SMOOTH)
 
 
 def _bends(points: Sequence[tuple[float, float, float]], rest: float) -> bool:

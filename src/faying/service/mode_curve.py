@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from faying.study.vibration import InputTable
 from faying.typing import Array, Complex, Mask
 
 # amplitudes over which a density is integrated, from a share of the first known one to a multiple of the last: to 1e-4
@@ -22,6 +23,8 @@ SCANNED = 49  # steps between them, four in a decade
 LEAST_SLIP = 1e-6  # ratio: slip below it is as none, and has no logarithm to draw a curve through
 STEPS = 400  # of amplitude, among which a sine's answers are sought: a step is 3 % of it
 FARTHEST = 4.0  # decades of amplitude below the resonance at rest in which they are sought
+GAUSS = 10  # nodes of a stretch: its end is as far from the nearest pole as it is long, or farther, which leaves 1e-12
+PLACES, WEIGHTS = np.polynomial.legendre.leggauss(GAUSS)
 
 
 class RandomLevel(NamedTuple):
@@ -79,10 +82,7 @@ class ModeCurve:
 
     @cached_property
     def _spent(self) -> tuple[Array, ...]:
-        """Amplitudes a (n,), even in logarithms, and the integral of 2 zeta omega^3 a from 0 to them (n,).
-
-        And a^2, omega^3 a^2, zeta omega^3 a^2 there.
-        """
+        """Amplitudes a (n,), even in logs; the integral of 2 zeta omega^3 a to them; a^2, also times omega^3, and zeta."""
         a = np.geomspace(FIRST_RATIO * self.amplitudes[0], LAST_RATIO * self.amplitudes[-1], GRID)
         speed, damping = self.at(a)
         rate = 2 * damping * speed**3 * a**2  # over log(a)
@@ -164,3 +164,40 @@ class ModeCurve:
 def resistance(speed: Any, damping: Any, drive: Array) -> Complex:
     """Force over coordinate of a mode [1/s2] at circular frequencies [rad/s]: w^2 - W^2 + 2 i zeta w W."""
     return np.asarray(speed**2 - drive**2 + 2j * damping * speed * drive)
+
+
+def rule(table: InputTable, speeds: Array, dampings: Array) -> tuple[Array, Array]:
+    """Frequencies [Hz] (n,) and weights [Hz] (n,) for integrals over the band of a table.
+
+    Stretches end at the rows of the table and at distances of 1, 2, 4 ... half widths from each resonance.
+
+    Args:
+        table: Of the input.
+        speeds, dampings: Circular frequencies [rad/s] and damping ratios [-] of the modes (m,).
+    """
+    first, last = table.frequencies[[0, -1]]
+    ends = [table.frequencies]
+    for f, zeta in zip(speeds / (2 * np.pi), dampings, strict=True):
+        if f > 0 and zeta > 0:
+            most = np.log2(max(last, f) / (zeta * f)) + 1
+            away = zeta * f * np.concatenate([[0.0], 2.0 ** np.arange(np.ceil(most))])
+            ends += [f - away, f + away]
+    every = np.unique(np.clip(np.concatenate(ends), first, last))
+    middle, half = (every[1:] + every[:-1]) / 2, np.diff(every) / 2
+    return (middle[:, None] + half[:, None] * PLACES).ravel(), (half[:, None] * WEIGHTS).ravel()
+
+
+def resonance(speed: Array | float, damping: Array | float, frequencies: Array) -> Complex:
+    """The coordinate of modes (m, n) [s2] under a unit force of frequencies [Hz] (n,)."""
+    return 1 / resistance(np.atleast_1d(speed)[:, None], np.atleast_1d(damping)[:, None], 2 * np.pi * frequencies)
+
+
+def variance(table: InputTable, force: float, speed: float, damping: float) -> float:
+    """Mean square of the coordinate of one mode under a density of the input, by its modal force per unit of it."""
+    f, weights = rule(table, np.array([speed]), np.array([damping]))
+    return float(force**2 * (weights * table.at(f)) @ np.abs(resonance(speed, damping, f)[0]) ** 2)
+
+
+def greatest(products: Array) -> Array:
+    """Root of the greatest eigenvalue of matrices (..., k, k): rms, or amplitude, along the worst direction."""
+    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(products)[..., -1], 0.0)))

@@ -21,14 +21,13 @@ from faying.result.provenance import Provenance
 from faying.result.vibration import VibrationResponse
 from faying.service.curves import CurveSets, curve_sets
 from faying.service.excited import Excited, twins_along
-from faying.service.mode_curve import ModeCurve
-from faying.service.spectra import greatest, resonance, rule, variance
+from faying.service.mode_curve import ModeCurve, greatest, resonance, rule, variance
 from faying.study.vibration import Excitation
 from faying.typing import Array, Complex
 
-PEAKS = {"random": 3.0, "sine": 1.0}  # of what is printed, at which margins are taken: 3 sigma, or the amplitude
-# of the same, up to which the curve of a mode is marched: one cycle of random vibration in 90 exceeds it
-CURVE_REACH = {"random": 3.0, "sine": 1.0}
+# of what is printed, 3 sigma or the amplitude: where margins are taken, and how far the curve of a mode is marched; one
+# cycle of random vibration in 90 exceeds it
+PEAKS = {"random": 3.0, "sine": 1.0}
 ANGLES = 24  # round a bolt at which its stress is looked at: of a sine between two of them 0.2 % is missed
 LINES, NEAR_LINES = 300, 12  # frequencies of a curve over the band, and on either side of each resonance
 AROUND, SAMPLES = (0.05, 3.0), 15  # levels at which a mode's damping is drawn, over the one that it reaches
@@ -108,7 +107,7 @@ def _needed(excitation: Excitation, force: float, curve: ModeCurve) -> float:
     else:
         speeds = _swept(excitation, [curve])
         found = float(np.abs(curve.forced(force * excitation.table.at(speeds / (2 * np.pi)), speeds)[0]).max())
-    return CURVE_REACH[excitation.kind] * found
+    return PEAKS[excitation.kind] * found
 
 
 def _swept(excitation: Excitation, curves: Sequence[ModeCurve]) -> Array:
@@ -415,7 +414,7 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
         yield Note(code="vibration-band", severity="limit", text=text)
     level = found["level"][1]
     rms = " rms" if excitation.kind == "random" else ""
-    for k in np.flatnonzero(CURVE_REACH[excitation.kind] * level > reach).tolist():
+    for k in np.flatnonzero(PEAKS[excitation.kind] * level > reach).tolist():
         text = (
             f"{what}: mode {k + 1} reaches {level[k]:.3g} m/s2{rms}, its curve ends at {reach[k]:.3g} m/s2; beyond, no "
             "cycle of the mode alone is found, as its joints open or slide; frequency and damping stay as they are "

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from faying.case.case import Case, Progress
-from faying.case.engine import Engine
 from faying.case.solve import LoadedCase
 from faying.errors import InputError, NotConverged
+from faying.joint.modal import Engine
 from faying.joint.preload_case import PreloadCase
 from faying.loads.record import LoadCases
 from faying.loads.solve import answers, at_preload, preloaded_case

@@ -16,7 +16,6 @@ from faying.bolt.solid_bolt import SolidBolt
 from faying.bolt.threads import Thread
 from faying.bolt.vdi2230 import DEFAULT_FRICTION, TIGHTENED
 from faying.case.case import Case, Progress, bare
-from faying.case.engine import engine_of
 from faying.case.scatter import preload_scatter
 from faying.case.solve import solve
 from faying.errors import InputError
@@ -125,7 +124,7 @@ def bolt_sheet(
     stages = 7 if any(choice_of(plan.bolt_sheets, bolt.name).loads for bolt in plan.bolts) else 4
     progress = Progress(stages, report)
     case = Case.of(bare(plan), progress)
-    engine = engine_of("reanalysis", case)
+    engine = case.engine("reanalysis")
     state = solve(case, number, engine, progress, ranges=False)
     numbers = bolt_numbers(case, [state], shapes_of(case, [state]))
     if numbers is None:
