@@ -63,7 +63,7 @@ def states():
     [
         ("beam", 3.0, 0.05),
         ("beam", 10.0, 0.05),
-        pytest.param("beam", 20.0, 0.05, marks=pytest.mark.xfail(strict=True, reason="slides at 1.7 sigma: 8.7 % off")),
+        ("beam", 6.0, 0.05),
         ("plates", 2e-5, 0.05),
         ("plates", 3e-4, 0.05),
         ("plates", 3.5e-3, 0.05),
@@ -95,3 +95,12 @@ def test_the_leading_mode_has_the_rms_and_the_damping_of_integration_in_time(sta
     )
     assert sigma == pytest.approx(got.sigma(sigma), rel=rms)
     assert damping == pytest.approx(got.damping, rel=0.1)
+
+
+def test_a_beam_that_slides_at_less_than_two_sigma_says_so(states):
+    """Under 20 N2/Hz integration in time has 8.7 % less rms."""
+    first = states["beam"].frequencies[0]
+    noise = faying.Excitation("n", psd=[(f, 20.0) for f in (first / 50, 2 * first)])
+    (found,) = faying.vibration(states["beam"], [noise])
+    assert 3 * found.slip_margin[1, 0] < 2
+    assert [note.code for note in found.notes if note.severity == "wrong"] == ["vibration-beyond"]

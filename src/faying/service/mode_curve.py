@@ -82,7 +82,7 @@ class ModeCurve:
 
     @cached_property
     def _spent(self) -> tuple[Array, ...]:
-        """Amplitudes a (n,), even in logs; the integral of 2 zeta omega^3 a to them; a^2, also times omega^3, and zeta."""
+        """Amplitudes a (n,), even in logs; integral of 2 zeta omega^3 a to them; a^2; a^2 omega^3; a^2 omega^3 zeta."""
         a = np.geomspace(FIRST_RATIO * self.amplitudes[0], LAST_RATIO * self.amplitudes[-1], GRID)
         speed, damping = self.at(a)
         rate = 2 * damping * speed**3 * a**2  # over log(a)
