@@ -12,6 +12,8 @@ from faying.measured.lsfd import compressed, residues
 from faying.measured.mac import mac
 from faying.typing import Array, Complex, Index
 
+NOISE = 1e-9  # of the greatest value
+
 
 @dataclass(frozen=True, kw_only=True)
 class Rule:
@@ -81,20 +83,19 @@ def poles_by_order(frf: FRF, highest_order: int) -> list[Complex]:
         warnings.simplefilter("ignore")
         from sdypy import EMA
 
-        model: Any = EMA.Model(
-            rows / np.abs(rows).max(),
-            frequency,
-            lower=max(lines, 1) * step,
-            upper=frequency[-1],
-            pol_order_high=highest_order,
-            frf_form=frf.quantity,
-        )
-        try:
-            model.get_poles(method="lscf", show_progress=False)
-        except np.linalg.LinAlgError as fault:
-            raise InputError(
-                f"no poles of order {highest_order} ({fault}): the FRFs are zero or of one mode; lower the order"
-            ) from None
+        rows = rows / np.abs(rows).max()
+        noise = NOISE * np.random.default_rng(1).standard_normal(rows.shape)
+        # without any noise a few modes leave nothing to poles of high order, and rounding says whether that is singular
+        for given in (rows, rows + noise):
+            band = {"lower": max(lines, 1) * step, "upper": frequency[-1], "frf_form": frf.quantity}
+            model: Any = EMA.Model(given, frequency, pol_order_high=highest_order, **band)
+            try:
+                model.get_poles(method="lscf", show_progress=False)
+                break
+            except np.linalg.LinAlgError as fault:
+                if given is not rows:
+                    text = f"no poles of order {highest_order} ({fault}): the FRFs are zero; lower the order"
+                    raise InputError(text) from None
     found = [np.asarray(p, complex) for p in model.all_poles]
     return [p[np.isfinite(p) & (p.imag > 0)] for p in found]
 
