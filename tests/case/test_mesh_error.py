@@ -144,6 +144,16 @@ def test_the_interval_of_the_mesh_holds_nine_of_ten_finer_frequencies(of_example
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in assemblies.SIZES if "-" not in name])
+def test_assemblies_hold_nine_of_ten_finer_frequencies(tmp_path, name):
+    study = Study.read(proposed(assemblies.made(name, tmp_path / f"{name}.step"), assemblies.SIZES[name]))
+    study = plain(replace(study, modes=replace(study.modes, count=8)))
+    found = run(replace(study, modes=replace(study.modes, intervals=True)))
+    fine = run(finer(replace(study, modes=replace(study.modes, intervals=False)), 0.7))
+    assert holds(found, fine).mean() >= 0.9
+
+
+@pytest.mark.slow
 def test_a_pair_of_a_symmetric_ring_differs_by_less_than_the_error_of_the_mesh(tmp_path):
     """Two modes of a flange that differ by a turn alone have one frequency on the exact structure."""
     study = Study.read(proposed(assemblies.flanges(tmp_path / "flanges.step"), "16 mm"))
