@@ -74,6 +74,7 @@ SHAPES |= {"stress_spread": 1e-4}  # of a bolt, the root of a difference that ro
 ESTIMATES = {"mesh_error": 5e-3, "error": 0.1}
 TOLERANCES = ESTIMATES | {"loss_factors": 1e-6, "low": RANGE_ERROR, "high": RANGE_ERROR, "level_frequencies": 1e-4}
 RESPONSE = 2 * SHAPES["shapes"]  # of its greatest value; two shapes are in each term
+# ends at the least friction, where a joint slides nearly as a whole and no cycle settles, are twice as far apart
 FREQUENCY, DAMPING = 1e-8, 1e-2
 # intervals and draws of waves, each in a small basis of its own: at the first and the last load, and between them
 IN_A_BASIS, BETWEEN = 4 * changed.TOLERANCE, changed.BETWEEN
@@ -113,6 +114,8 @@ def alike(name, a, b, in_a_basis):
         assert a == pytest.approx(b, abs=RESPONSE * float(np.abs(b).max(initial=0.0)), nan_ok=True), name
     elif name.startswith(("interval", "wave")):
         assert a == pytest.approx(b, rel=in_a_basis, abs=in_a_basis, nan_ok=True), name
+    elif name in ("level_low", "level_high"):
+        assert a == pytest.approx(b, rel=2 * DAMPING, abs=NO_SLIP, nan_ok=True), name
     elif name.startswith("level_") and name != "level_frequencies":
         assert a == pytest.approx(b, rel=DAMPING, abs=NO_SLIP, nan_ok=True), name
     else:
@@ -131,10 +134,10 @@ def test_damping_at_levels_does_not_depend_on_what_else_is_asked_for(study, plen
     first = replace(study.preloads[0], forces=(4e3,))
     among = replace(study, preloads=(first, *study.preloads), modes=replace(study.modes, intervals=True))
     one, more = plenty, run(among)
-    # equilibrium from another start is off by rounding, of which the passes make 6e-4
+    # equilibrium from another start is off by rounding, of which passes make 2e-3 where most of a joint slides
     for name in ("slip", "low", "high"):
         found, alone = getattr(more.levels, name)[-1], getattr(one.levels, name)[0]
-        assert found == pytest.approx(alone, rel=1e-3, abs=NO_SLIP)
+        assert found == pytest.approx(alone, rel=3e-3, abs=NO_SLIP)
 
 
 @pytest.mark.slow

@@ -62,7 +62,7 @@ def states():
     ("name", "density", "rms"),
     [
         ("beam", 3.0, 0.05),
-        ("beam", 10.0, 0.05),
+        ("beam", 8.0, 0.05),
         ("beam", 6.0, 0.05),
         ("plates", 2e-5, 0.05),
         ("plates", 3e-4, 0.05),

@@ -46,8 +46,9 @@ ERROR_OF_SHAPE = 0.2
 # of the damping, over the motion that a harmonic near a mode would have, were it not left out, over that of the first
 # one: an energy of this size comes and goes (beam whose mode 5 has twice the frequency of mode 3)
 ERROR_OF_NEAR_MODE = 4.0
-# of the damping, over the damping ratio: what slides far lags behind (twenty random blocks up to where all slides)
-ERROR_OF_LAG = 8.0
+# of the damping, over the damping ratio: what slides far lags behind, and the basis lacks more of it (twenty random
+# blocks up to where all slides: the balance had 0.06 for 0.22)
+ERROR_OF_LAG = 12.0
 MET = 0.1  # of its square: how near the speed of a harmonic may come to that of a mode
 SLIGHT = 1e-5  # relative change of the squared frequency that needs no second pass
 MIN_MOTION = 1e-3  # of the greatest motion of a joint's points: what moves less keeps its stiffness at rest
@@ -64,7 +65,7 @@ BALANCE = 1e-5  # residual over the elastic forces of a mode, and twice the erro
 BALANCE_STEPS = 12  # of Newton: what has an answer takes 5 to 10
 BALANCE_SHORTEST = 1 / 4  # of its step of 1.5: it ends within a tenth of the last level with an answer
 MIN_SHARE = 1 / 64  # of a change of the secant stiffnesses, below which the passes have no answer at a level
-UNSETTLED = 1e-3  # change of the damping in the last pass above which harmonic balance takes over
+UNSETTLED = 10 * TOLERANCE  # change of the damping in the last pass above which harmonic balance takes over
 MOST_DOWN = 8  # halves of a level that has not settled, of which one has to settle for a balance to begin with
 
 
@@ -204,7 +205,7 @@ class LevelModel:
                 break
             secants, softened, like = found
             speed, shape = float(softened[0][like]), softened[1][:, like]
-            if abs(speed**2 - squared) < TOLERANCE * squared and change < 10 * TOLERANCE:
+            if abs(speed**2 - squared) < TOLERANCE * squared and change < UNSETTLED:
                 break
         error = change + self._shape_error(speed, number) + ERROR_OF_NEAR_MODE * near + ERROR_OF_LAG * damping
         return LevelCycle(
@@ -245,7 +246,7 @@ class LevelModel:
         if len(curve.points) == 1:
             return start
         last = curve.points[-1]
-        left = BALANCE / max(2 * last.damping, BALANCE)
+        left = BALANCE / max(2 * last.damping, BALANCE) + ERROR_OF_LAG * last.damping
         return LevelCycle(
             level=level if curve.code == "amplitude" else last.level,
             frequency=last.frequency / (2 * np.pi),
