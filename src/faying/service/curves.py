@@ -187,4 +187,4 @@ def _bends(points: Sequence[tuple[float, float, float]], rest: float) -> bool:
         return False
     # below the first point slip is in proportion to the amplitude
     change = float(np.ptp(np.concatenate([[1.0], np.diff(slips) / along])[-2:]))
-    return change > BEND * (1 + rest / points[-1][2]) if points[-1][2] > 0 else False
+    return change * points[-1][2] > BEND * (points[-1][2] + rest)
