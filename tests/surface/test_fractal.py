@@ -27,7 +27,7 @@ def many(method, H, count, side, **options):
     return np.array([f.D - 3 + H for f in fits]), fits
 
 
-@pytest.mark.parametrize("method", ["psd", "moments", "fpenn"])
+@pytest.mark.parametrize("method", ["psd", "moments"])
 @pytest.mark.parametrize("H", [0.35, 0.75])
 def test_spectral_estimators_are_unbiased_and_their_intervals_hold(method, H):
     error, fits = many(method, H, 20, 256)

@@ -1,12 +1,11 @@
-"""Moments of ideal series, their exact inversion, and the network that learns it."""
+"""Moments of ideal series, and their exact inversion."""
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from faying import InputError
-from faying.surface import fpenn
 from faying.surface.convention import prefactor
 from faying.surface.moments import from_series_moments, series_frequencies
 from tests.helpers.weierstrass import weierstrass_mandelbrot
@@ -63,40 +62,3 @@ def test_impossible_moments_are_refused():
         from_series_moments(1e-12, 1e9, length=1e-3, terms=10)
     with pytest.raises(InputError, match="terms >= 2"):
         series_frequencies(1e-3, 1)
-
-
-def test_the_network_finds_the_paper_s_pair_within_its_stated_error():
-    m = series_moments(2.39, 1.53e-10, length=4e-3, terms=17)
-    D, G = fpenn.from_series_moments(*m, length=4e-3, terms=17)
-    known = fpenn.trained_range()
-    assert abs(D - 2.39) <= known.error_D
-    level = (2 * D - 4) * np.log(G / 4e-3) - 0.78 * np.log(1.53e-10 / 4e-3)
-    assert abs(level) <= known.error_log_level
-    assert known.error_D < 5e-3
-
-
-@settings(max_examples=200)
-@given(D=st.floats(2.05, 2.95), log_ratio=st.floats(-22, -6), terms=st.integers(4, 40), length=st.floats(1e-5, 1.0))
-def test_the_network_keeps_its_stated_error_and_has_no_unit(D, log_ratio, terms, length):
-    m = series_moments(D, np.exp(log_ratio) * length, length=length, terms=terms)
-    found, _ = fpenn.from_series_moments(*m, length=length, terms=terms)
-    # the stated largest error is that of 1e5 random cases; hypothesis looks at the corners
-    assert abs(found - D) <= 3 * fpenn.trained_range().error_D
-
-
-def test_stated_errors_hold_on_fresh_cases():
-    rng = np.random.default_rng(99)
-    known = fpenn.trained_range()
-    errors = []
-    for _ in range(500):
-        D, terms = rng.uniform(*known.D), int(rng.integers(known.terms[0], known.terms[1] + 1))
-        m = series_moments(D, np.exp(rng.uniform(*known.log_ratio)), length=1.0, terms=terms)
-        errors.append(fpenn.from_series_moments(*m, length=1.0, terms=terms)[0] - D)
-    assert np.sqrt(np.mean(np.square(errors))) == pytest.approx(known.rms_D, rel=0.5)
-
-
-def test_the_network_refuses_what_it_has_not_seen():
-    with pytest.raises(InputError, match="4 to 40"):
-        fpenn.from_series_moments(1.0, 1.0, 1.0, length=1.0, terms=3)
-    with pytest.raises(InputError, match="positive"):
-        fpenn.from_series_moments(0.0, 1.0, 1.0, length=1.0, terms=10)

@@ -30,7 +30,7 @@ def fit_fractal(
     Args:
         scan: heights [m] with their spacing; levelled, freed of spikes and filled in before the fit.
         method: "psd" (power law with white noise fitted to the spectrum; recommended), "moments" (ratio of the
-            spectral moments m2 and m0), "fpenn" (a network on moments), "structure" (structure function) or "mfdfa"
+            spectral moments m2 and m0), "structure" (structure function) or "mfdfa"
             (detrended fluctuation).
         band: shortest and longest wavelength to use instead of what the data support, from twice the spacing to the
             side; [m], or text with a unit.

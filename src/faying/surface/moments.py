@@ -3,7 +3,7 @@
 The finite Weierstrass-Mandelbrot series with frequencies f_n and amplitudes A_n^2 = c G^(2Ds-2) ln(gamma) f_n^-(4-2Ds)
 has m_2k = (2 pi)^(2k) sum_n A_n^2 f_n^(2k) / 2. m2/m0 depends on Ds alone, so one root gives Ds and m0 then gives G; m4
 is left over and tells whether the heights obey the law. The network of Jiang et al. (FPENN, doi:10.1016/
-j.chaos.2022.112440) learns this same map.
+j.chaos.2022.112440), from which the JK model has D and G, learns this same map.
 """
 
 from math import log, pi

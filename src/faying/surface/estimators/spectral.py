@@ -91,12 +91,9 @@ def clean_band(ready: Prepared, limits: Limits) -> FittedBand:
 
 
 def through_draws(
-    ready: Prepared, band: FittedBand, c: float, solve: Callable[[Array], tuple[float, float]], extra: float = 0.0
+    ready: Prepared, band: FittedBand, c: float, solve: Callable[[Array], tuple[float, float]]
 ) -> Estimate:
-    """Solve for (slope, ln S(pivot)) on the measured bins; bias and covariance from 200 draws of the bins.
-
-    `extra` is a further standard error of D (a network's).
-    """
+    """Solve for (slope, ln S(pivot)) on the measured bins; bias and covariance from 200 draws of the bins."""
     slope, level = solve(band.clean(band.density, band.law.noise))
     rng = np.random.default_rng(2024)
     draws = []
@@ -111,7 +108,6 @@ def through_draws(
     centre = solve(band.clean(band.law.expected, band.law.noise))
     slope, level = slope - float(cloud[:, 0].mean() - centre[0]), level - float(cloud[:, 1].mean() - centre[1])
     covariance = np.cov(np.stack([cloud[:, 1], -cloud[:, 0] / 2]))
-    covariance[1, 1] += extra**2
     f = band.frequency
     return with_intervals(
         (7 - slope) / 2,
