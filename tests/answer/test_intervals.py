@@ -44,15 +44,22 @@ def test_every_run_has_an_interval_of_each_frequency(plain):
     assert interval.shares[3] / interval.shares[4] == pytest.approx(1.2**2 * np.ones_like(interval.shares[3]))
 
 
+def test_a_mode_has_the_same_number_in_a_run_and_in_samples(plain, tmp_path):
+    """Under the medians torsion is below the bending mode that it is above as modelled."""
+    best = plain.interval.best[0]
+    assert best[4] < best[3]
+    sampled = np.median(faying.predict(study(tmp_path), samples=16).frequencies, axis=0)[0]
+    assert np.array_equal(np.argsort(sampled), np.argsort(best))
+
+
 @pytest.mark.slow
-@pytest.mark.xfail(reason="0.27 of the width where modes 4 and 5 mix: products of two numbers count there")
 def test_one_at_a_time_gives_the_interval_of_samples_of_the_whole(plain, tmp_path):
-    """Products of two numbers are left out: a fifth of the width at worst, a twentieth mostly."""
-    sampled = faying.predict(study(tmp_path), samples=256)
+    """With the law and k_t/k_n together: alone they miss ends by 0.14 of the width, where a soft joint shears."""
+    sampled = faying.predict(study(tmp_path), samples=1024)
     low, _, high = sampled.quantiles().frequencies
-    miss = np.abs([plain.interval.low - low, plain.interval.high - high]) / (high - low)
-    assert np.median(miss) < 0.05
-    assert miss.max() < 0.2
+    miss = np.abs(np.log([plain.interval.low / low, plain.interval.high / high])) / np.log(high / low)
+    assert np.median(miss) < 0.02
+    assert miss.max() < 0.1
 
 
 # 0.15 of what JK has: a factor of 4.2 about a median of 0.26, 5 to 95 %

@@ -94,3 +94,11 @@ def test_twins_are_told_at_each_load():
         [[True, True, False], [True, True, False], [False, False, True]],
         [[True, False, False], [False, True, True], [False, True, True]],
     ]
+
+
+def test_modes_are_followed_from_any_order():
+    """Twins that stand apart in the list of modes, as where the numbers are those of another state."""
+    after = np.array([[0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1], [0, 1, 0, 0]], dtype=float)
+    before = np.array([100.0, 90.0, 100.01, 95.0])
+    assert same_group(before)[0].tolist() == [True, False, True, False]
+    assert follow(np.eye(4), after, np.eye(4), before).tolist() == [2, 0, 3, 1]

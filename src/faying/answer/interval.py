@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from statistics import NormalDist
 
 import numpy as np
 
@@ -38,6 +39,8 @@ from faying.units import show
 
 DRAWS = 4
 MIN_DRAWS = 2  # that have a scatter
+BOTH = {"law", "k_t/k_n"}  # act on the same springs: what they do together is no sum
+GRID = 64  # equal shares of the probability of either: a quantile of both is right to a hundredth of the width
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,11 +156,13 @@ class Joints:
         medians: the same draws, or the case as it is where none are drawn, and with the medians of the law, of k_t/k_n
             and of the preload; none where the joints cannot be changed.
         pairs: both ends of each thing about the first of these.
+        corners: the law at both ends with k_t/k_n at both ends, about the same (4); none where either does not scatter.
     """
 
     band: WaveDraws | None = None
     medians: Sequence[tuple[Found | None, Found]] = ()
     pairs: Mapping[str, tuple[Found, Found]] = field(default_factory=dict)
+    corners: Sequence[Found] = ()
 
 
 def intervals(
@@ -194,14 +199,16 @@ def intervals(
     laws, (factors, _) = _laws(case, known), _preload_factors(case, known)
     medians = [replace(one, laws=laws, factor=factors) for one in waves or [plain]]
     ends = _ends(case, known, medians[0])
-    changes = [*waves, *medians, *(one for pair in ends.values() for one in pair)]
+    corners = _corners(case, known, medians[0]) if ends.keys() >= BOTH else []
+    of_ends = [*(one for pair in ends.values() for one in pair), *corners]
     # modes of a draw under the medians are those of the draw, and those of the ends are those of the first median
-    after = [*[None] * len(waves), *(range(len(waves)) or [None]), *[len(waves)] * (2 * len(ends))]
-    found = iter(frequencies_of(case, states, changes, after))
+    after = [*[None] * len(waves), *(range(len(waves)) or [None]), *[len(waves)] * len(of_ends)]
+    found = iter(frequencies_of(case, states, [*waves, *medians, *of_ends], after))
     of_waves, of_medians = ([next(found) for _ in some] for some in (waves, medians))
     pairs = {name: (next(found), next(found)) for name in ends}
     band = draws.band(case.loads, states, of_waves)
-    of_joints = Joints(band=band, medians=list(zip(of_waves or (None,), of_medians, strict=True)), pairs=pairs)
+    both = list(zip(of_waves or (None,), of_medians, strict=True))
+    of_joints = Joints(band=band, medians=both, pairs=pairs, corners=list(found))
     of_draws = [
         drawn if isinstance(drawn, NotConverged) else at for drawn, at in of_joints.medians if drawn is not None
     ]
@@ -235,6 +242,12 @@ def _ends(case: Case, known: Known, middle: ChangedCase) -> dict[str, tuple[Chan
     if len(case.loads) == 1 and least < most:
         out["preload"] = replace(middle, factor=least * factors), replace(middle, factor=most * factors)
     return out
+
+
+def _corners(case: Case, known: Known, middle: ChangedCase) -> list[ChangedCase]:
+    """The law at both ends with k_t/k_n at both ends."""
+    laws = [_laws(case, known, factor, ratio) for factor in (0, 2) for ratio in (0, 2)]
+    return [replace(middle, laws=one, trained=False) for one in laws]
 
 
 def _incomplete(found: Mapping[str, Sequence[Found]]) -> Iterator[Note]:
@@ -315,6 +328,9 @@ def _combined(
         for name, (low, high) in joints.pairs.items():
             if isinstance(low, np.ndarray) and isinstance(high, np.ndarray):
                 found[name] = np.log(np.stack([low, high]) / about)
+        corners = [np.log(one / about) for one in joints.corners if isinstance(one, np.ndarray)]
+        if found.keys() >= BOTH and len(corners) == 4:
+            found |= _together({name: found[name] for name in sorted(BOTH)}, np.stack(corners))
     if joints.band is not None:
         logs = np.log(joints.band.frequencies / f)
         mean = logs.mean(axis=0)
@@ -334,6 +350,29 @@ def _combined(
         found["mesh"], moved = mesh.offsets, moved + mesh.middle
     named = {name: of_group(found[name]) for name in SCATTER if name in found}
     return Interval.about(np.exp(of_group(np.log(f) + middle + moved)), named, of_group(moved))
+
+
+def _together(alone: Mapping[str, Array], corners: Array) -> dict[str, Array]:
+    """What the law and k_t/k_n move ln f by, so that their squares add to the ends of what both do together.
+
+    Where a joint is soft its shear counts more: both at an end move a mode by more, or less, than their sum. Between
+    the ends and beyond them ln f goes with each normal score, and with the product of both in each quadrant.
+
+    Args:
+        alone: Both ends of each by itself, k_t/k_n first (2, loads, m).
+        corners: Both at their ends, those of the law first (4, loads, m).
+    """
+    ratio, law = alone.values()
+    known = np.zeros((3, 3, *law.shape[1:]))
+    known[::2, 1], known[1, ::2], known[::2, ::2] = law, ratio, corners.reshape(2, 2, *law.shape[1:])
+    scores = np.array([NormalDist().inv_cdf((k + 0.5) / GRID) for k in range(GRID)]) / SCORE
+    share = np.stack([np.maximum(-scores, 0.0), 1 - np.abs(scores), np.maximum(scores, 0.0)])
+    values = np.einsum("ia,jb,ij...->ab...", share, share, known).reshape(GRID**2, *law.shape[1:])
+    low, high = np.quantile(values, LEVELS[::2], axis=0)
+    down, up = (np.hypot(*(np.maximum(sign * one, 0.0).max(axis=0) for one in (law, ratio))) for sign in (-1, 1))
+    moves = np.minimum(down, up) > 0
+    down, up = (np.where(moves, end / np.where(moves, one, 1.0), 1.0) for end, one in ((-low, down), (high, up)))
+    return {name: np.where(one < 0, down * one, up * one) for name, one in alone.items()}
 
 
 def _preload_factors(case: Case, known: Known) -> tuple[Array, tuple[float, float]]:

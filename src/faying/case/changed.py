@@ -20,11 +20,15 @@ TOLERANCE, BETWEEN = 1e-4, 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class ChangedCase:
-    """A case with other laws and gaps [m] (q,) of all joints; factor: on the force of each bolt (b,), or of all."""
+    """A case with other laws and gaps [m] (q,) of all joints.
+
+    factor: on the force of each bolt (b,), or of all; trained: whether the basis is made for it, or for others near it.
+    """
 
     laws: Sequence[JointLaw]
     gaps: Sequence[Array]
     factor: float | Array = 1.0
+    trained: bool = True
 
     @classmethod
     def nothing(cls, case: Case) -> "ChangedCase":
@@ -68,8 +72,12 @@ def frequencies_of(
         return [Gapped(laws=one.laws, forces=one.factor * force, friction=friction, gaps=one.gaps) for force in forces]
 
     variants = [loads_of(one) for one in changes]
-    trained = reduction.train_each([[loads[k] for k in at] for loads in variants], TOLERANCE)
-    starts = [group if isinstance(group, NotConverged) else group[0].displacement for group in trained]
+    groups = [[loads[k] for k in at] for one, loads in zip(changes, variants, strict=True) if one.trained]
+    trained = iter(reduction.train_each(groups, TOLERANCE))
+    starts: list[Array | NotConverged] = []
+    for one, by_way in zip(changes, after, strict=True):
+        group = next(trained) if one.trained else starts[by_way or 0]
+        starts.append(group[0].displacement if isinstance(group, list) else group)
     solved = next((start for start in starts if not isinstance(start, NotConverged)), None)
     if solved is None:
         return [one for one in starts if isinstance(one, NotConverged)]

@@ -18,7 +18,7 @@ from faying.joint.springs import Springs
 from faying.joint.structure import Structure
 from faying.notes import Note
 from faying.study.study import Study
-from faying.typing import Array, Mask
+from faying.typing import Array, Index, Mask
 from faying.units import show
 
 # a finer mesh moved frequencies by 0.3 to 0.7 of what half of the points do where half of the flange is open, by less
@@ -65,6 +65,11 @@ class MeshError:
             mean = np.zeros(len(f)) if both is None else np.log(np.stack(both) / f).mean(axis=0)
             contact.append(OF_HALVES * np.abs(mean))
         return cls(parts=np.stack(parts), contact=np.stack(contact))
+
+    def of_modes(self, places: Index) -> "MeshError":
+        """Those of modes in another order: places (loads, m) of each in the present one."""
+        parts, contact = (np.take_along_axis(one, places, axis=1) for one in (self.parts, self.contact))
+        return MeshError(parts=parts, contact=contact)
 
     @property
     def total(self) -> Array:

@@ -29,9 +29,11 @@ def partners(alike: Array, least: float = 0.0) -> Index:
 
 
 def same_group(frequencies: Array) -> Mask:
-    """Whether two modes are one of them or twins (..., m, m), by their frequencies (..., m) in rising order."""
-    apart = np.diff(frequencies, prepend=frequencies[..., :1]) > TWINS * frequencies
-    group = np.cumsum(apart, axis=-1)
+    """Whether two modes are one of them or twins (..., m, m), by their frequencies (..., m) in any order."""
+    order = np.argsort(frequencies, axis=-1, kind="stable")
+    rising = np.take_along_axis(frequencies, order, axis=-1)
+    apart = np.diff(rising, prepend=rising[..., :1]) > TWINS * rising
+    group = np.take_along_axis(np.cumsum(apart, axis=-1), np.argsort(order, axis=-1), axis=-1)
     return np.asarray(group[..., :, None] == group[..., None, :])
 
 
@@ -61,7 +63,7 @@ def follow(before: Any, after: Any, mass: Any, frequencies: Array) -> Index:
     Args:
         before, after: Shapes (d, m) and (d, m), complex or real.
         mass: Of the structure (d, d), or in the basis of the shapes.
-        frequencies: Before, rising (m,) [Hz], by which twins are told.
+        frequencies: Before, in any order (m,) [Hz], by which twins are told.
 
     Returns:
         Of a mode whose shape none has any more, as where it left the range that was looked at: the next one left, in
@@ -75,7 +77,9 @@ def follow(before: Any, after: Any, mass: Any, frequencies: Array) -> Index:
     out = partners(alike, LIKE)
     out[out < 0] = np.setdiff1d(np.arange(alike.shape[1]), out)[: np.count_nonzero(out < 0)]
     # twins keep their order: any directions in their plane serve, so that shapes do not tell which is which
-    return np.concatenate([np.sort(out[group]) for group in np.unique(groups, axis=0)[::-1]])
+    for group in np.unique(groups, axis=0):
+        out[group] = np.sort(out[group])
+    return out
 
 
 def _squares(shapes: Any, momenta: Any) -> Array:

@@ -215,7 +215,10 @@ class VariantBuilder:
 
     def laws(self, index: int) -> tuple[list[JointLaw], Array, list[float | None]]:
         """Law of each joint, force of each bolt [N] and friction of each joint at one point."""
-        point = self.design.point(index)
+        return self.of(self.design.point(index))
+
+    def of(self, point: StudyVariant) -> tuple[list[JointLaw], Array, list[float | None]]:
+        """The same of a study with some values put in."""
         laws = [self._law(point, number) for number in range(len(point.surfaces))]
         return laws, point.forces, [joint.friction for joint in point.study.joints]
 

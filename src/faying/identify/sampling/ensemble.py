@@ -257,6 +257,11 @@ class Ensemble:
         found = self._last[sample]
         return replace(found, forces=found.forces[load])
 
+    def as_modelled(self, load: int) -> StudyVariant:
+        """The study as it stands at one load."""
+        forces = np.array(self.study.preloads[load].forces)
+        return StudyVariant(study=self.study, surfaces=self.surfaces, forces=forces)
+
     def _at(self, sample: int) -> StudyVariant:
         """The study at one sample, with the forces [N] of all loads (loads, b)."""
         forces = np.array([one.forces for one in self.study.preloads])

@@ -120,15 +120,29 @@ class Evaluator:
     def with_median(self, law: int) -> "Evaluator":
         """The same, with the median under one of the laws, or the first sample that has an answer.
 
-        Its faces have the form of the study: a draw of waves has modes of its own, and none is the middle of all.
+        Its faces have the form of the study: a draw of waves has modes of its own, and none is the middle of all. Its
+        modes are in the order that they have as modelled: a run numbers them so.
         """
         training = self.ensemble.training
         for sample in (law - training, *range(-training, self.ensemble.count)):
             try:
-                return replace(self, median=tuple(self.solved(sample, drawn=False)[1]))
+                median = self.solved(sample, drawn=False)[1]
             except FayingError:
                 continue
+            return replace(self, median=tuple(map(self._as_modelled, range(len(median)), median)))
         return self
+
+    def _as_modelled(self, load: int, median: Variant) -> Variant:
+        """The median at a load, its modes in the order of the study as it stands; as it is where that has no answer."""
+        model = self.model.with_gaps(self.builder.modelled_gaps)
+        try:
+            laws, forces, friction = self.builder.of(self.ensemble.as_modelled(load))
+            found = model.evaluate(laws, forces, friction, median.preload.displacement)
+        except FayingError:
+            return median
+        k = follow(found.shapes, median.shapes, model.matrices[2], found.frequencies)
+        modes = {name: getattr(median, name)[..., k] for name in ("frequencies", "loss_factors", "shapes")}
+        return replace(median, **modes)
 
     def _one(self, sample: int) -> dict[str, Any]:
         ensemble = self.ensemble
@@ -301,7 +315,9 @@ class Reduced:
         bases.model = self.trainer.builder.model_at(replace(bases.model, count=self.model.count), law * ensemble.loads)
         modes = [bases.with_halves(laws, one.preload.pressures) for one in found]
         springs = [structure.springs(one.preload.pressures) for one in found]
-        return MeshError.of(structure, [one[:2] for one in modes], springs, [one[2] for one in modes])
+        error = MeshError.of(structure, [one[:2] for one in modes], springs, [one[2] for one in modes])
+        median = self._evaluator(ensemble, law).median
+        return error and error.of_modes(np.argsort(np.argsort([one.frequencies for one in median], axis=1), axis=1))
 
     def rows(self, ensemble: Ensemble, what: str = "samples", law: int = 0, *, allowed: float = LIMIT) -> Rows:
         """Rows of all samples of an ensemble that has the same training; those that the bases do not fit, anew.
