@@ -192,7 +192,7 @@ def test_no_command_takes_a_path_that_no_file_can_have(command, name, said):
     ("options", "said"),
     [
         (["--z-unit", "um", "--D", "2.39"], "--z-unit: with --scan FILE alone"),
-        (["--method", "mfdfa", "--D", "2.39"], "--method: with --scan FILE alone"),
+        (["--method", "structure", "--D", "2.39"], "--method: with --scan FILE alone"),
         (["--D", "2.39", "--to", "abaqus", "--unit", "mm", "--json"], "--json: --to prints one law on first loading"),
     ],
 )

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from faying import FractalFit, InputError, NotConverged, Scan, fit_fractal
 from faying.surface.convention import cut_factor, implied_Rq
-from faying.surface.estimators.table import ESTIMATORS, METHODS, share_left, window_transfer
+from faying.surface.estimators.table import ESTIMATORS, METHODS
 from faying.surface.fractal import fit_all
 from faying.surface.fractal_fit import consistency
 from faying.surface.synthesize import spectral
@@ -42,7 +42,7 @@ def test_spectral_estimators_are_unbiased_and_their_intervals_hold(method, H):
 
 @pytest.mark.parametrize(
     ("method", "bias"),
-    [("structure", 0.1), ("mfdfa", 0.05)],
+    [("structure", 0.1)],
 )
 def test_other_estimators_are_as_far_off_as_the_table_says_and_say_so(method, bias):
     error, fits = many(method, 0.6, 4, 256)
@@ -160,7 +160,7 @@ def test_errors_say_what_is_allowed():
     with pytest.raises(InputError, match="all heights are the same"):
         fit_fractal(scan.with_heights(np.ones((64, 64))))
     with pytest.raises(NotConverged, match="use method psd"):
-        fit_fractal(spectral((20, 20), spacing=1e-6, D=2.5, G=G), "mfdfa")
+        fit_fractal(spectral((20, 20), spacing=1e-6, D=2.5, G=G), "structure")
     texts = [f for f in fit_all(spectral((24, 24), spacing=1e-6, D=2.5, G=G)).values() if isinstance(f, str)]
     assert texts
     assert all(len(text) > 20 for text in texts)
@@ -171,19 +171,6 @@ def test_a_smooth_surface_is_called_not_fractal():
     hills = 1e-6 * np.sin(2e5 * x) * np.sin(1.7e5 * y) + 1e-12 * np.random.default_rng(0).normal(size=(128, 128))
     fit = fit_fractal(Scan(heights=hills, spacing=(1e-6, 1e-6)))
     assert fit.warnings
-
-
-@pytest.mark.parametrize("order", [1, 2])
-def test_window_transfer_is_what_windows_of_noise_leave(order):
-    # a wave of u cycles in a window of many points, its polynomial removed by least squares
-    n, u = 4000, 1.37
-    t = (np.arange(n) + 0.5) / n
-    x = np.stack([np.cos(2 * np.pi * u * t), np.sin(2 * np.pi * u * t)], axis=1)
-    basis = np.linalg.qr(np.stack([(2 * t - 1) ** k for k in range(order + 1)], axis=1))[0]
-    left = np.mean((x - basis @ (basis.T @ x)) ** 2) * 2
-    cycles, share = share_left(order)
-    assert np.interp(u, cycles, share) == pytest.approx(left, abs=1e-4)
-    assert window_transfer(2.5, order) > 0
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ Each returns D and, through its closed transfer function, ln of the density S(f)
 the spread between parts of the scan, Student's t; it holds no bias.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from math import log
 
 import numpy as np
@@ -83,32 +83,9 @@ def size_band(ready: Prepared, limits: Limits, points: float, share: float) -> t
     return low, max(share * side, min(3.2 * low, side / 3))
 
 
-def mean_law(found: Sequence[tuple[float, float]], low: float, high: float) -> tuple[float, float]:
-    """Mean D and ln B of laws, the levels averaged at the middle of the band."""
-    middle = log(1 / (low * high) ** 0.5)
-    D = float(np.mean([d for d, _ in found]))
-    return D, float(np.mean([v - (7 - 2 * d) * middle for d, v in found])) + (7 - 2 * D) * middle
-
-
 def inside(D: float) -> float:
     """D moved into the open range where the transfer functions exist."""
     return min(max(D, 2.005), 2.995)
-
-
-def rows_of(z: Array, steps: tuple[float, ...]) -> list[tuple[Array, float]]:
-    """The profiles along x and along y (at most 256 each, evenly chosen) with their spacing."""
-    if z.ndim == 1:
-        return [(z[None, :], steps[0])]
-    both = (z, steps[1]), (z.T, steps[0])
-    return [(np.ascontiguousarray(lines[:: max(1, len(lines) // 256)]), step) for lines, step in both]
-
-
-def sizes_of(low: float, high: float, step: float, count: int = 12) -> list[int]:
-    """About `count` whole numbers of points between low and high, evenly over the logarithm."""
-    found = np.unique(np.rint(np.geomspace(max(low / step, 1.0), high / step, count)).astype(int))
-    if len(found) < 4:
-        raise NotConverged(f"only {len(found)} sizes between {low:.3g} and {high:.3g} m; give a wider band")
-    return [int(n) for n in found]
 
 
 def cut_log(D: float, areal: bool) -> float:
