@@ -8,7 +8,7 @@ import faying
 from faying.fe.elasticity import assemble
 from faying.fe.mesh import Mesh
 from faying.fe.nodal_forces import pressure_forces
-from faying.fe.stress import part_stresses, von_mises
+from faying.fe.stress import PartStress, at_outline, part_stresses, von_mises
 from faying.numerics.constraint import constrain
 from tests.helpers.boxes import SOLID_KINDS, block
 from tests.helpers.sides import sides_on
@@ -31,6 +31,26 @@ def test_an_even_strain_has_its_stress_at_every_node(kind):
     assert found.spread.max() < 1e-6 * np.abs(rows).max()
     deviator = exact - np.trace(exact) / 3 * np.eye(3)
     assert found.von_mises[:, 0] == pytest.approx(np.sqrt(1.5 * np.sum(deviator**2)), rel=1e-9)
+    # the roots of the characteristic polynomial, from the invariants
+    p = np.trace(exact), (np.trace(exact) ** 2 - np.trace(exact @ exact)) / 2, np.linalg.det(exact)
+    roots = np.sort(np.roots([1.0, -p[0], p[1], -p[2]]).real)
+    for values, root in zip(found.principal, roots[[2, 0]], strict=True):
+        assert values[:, 0] == pytest.approx(root, rel=1e-6)
+
+
+def test_parts_that_share_a_node_show_the_greater_stress_there():
+    def part(stress):
+        return PartStress(
+            nodes=np.array([0, 1]), stress=np.array(stress)[None, :, None].repeat(2, 0), spread=np.zeros((2, 1))
+        )
+
+    pulled, pressed = part([5.0, 0, 0, 0, 0, 0]), part([-7.0, 0, 0, 0, 0, 0])
+    found = at_outline({"a": pulled, "b": pressed}, 3, np.array([1, 2]))
+    assert {name: values.tolist() for name, values in found.items()} == {
+        "von_mises": [[7.0, 0.0]],
+        "tension": [[5.0, 0.0]],
+        "compression": [[-7.0, 0.0]],
+    }
 
 
 def solved(mesh, held, force):

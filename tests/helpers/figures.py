@@ -365,6 +365,7 @@ def shaken(load=8e3, name="shaker"):
         displacement=np.multiply.outer(three, 1e-5 * np.ones((2, 3))),
         line_frequency=f,
         curve=3.8 * np.multiply.outer(three, np.stack([peak, 0.5 * peak])),
+        curve_motion=3.8 * np.multiply.outer(three, np.stack([peak, 0.5 * peak])) / (2 * np.pi * f) ** 4,
         bolt_force=np.outer(three, [50.0, 60]),
         bolt_moment=np.outer(three, [0.5, 0.6]),
         bolt_shear=np.outer(three, [10.0, 20]),

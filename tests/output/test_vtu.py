@@ -114,7 +114,9 @@ def test_the_command_writes_them_and_refuses_what_is_no_result(result, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {"result.nc", "a.pvd", "a-1.vtu", "a-2.vtu"}
     (tmp_path / "s.toml").write_text("", encoding="utf-8")
     refused = CliRunner().invoke(cli, ["view", str(tmp_path / "s.toml"), "--vtu", str(tmp_path / "b.pvd")])
-    assert "--vtu writes a result (.nc) for ParaView; s.toml is none" in str(refused.exception)
+    assert "--vtu writes a result, load cases or a vibration (.nc) for ParaView; s.toml is none" in str(
+        refused.exception
+    )
     both = ["view", str(tmp_path / "result.nc"), "--vtu", str(tmp_path / "b.pvd"), "--out", "x.html"]
     assert "leave out --out and --unit" in str(CliRunner().invoke(cli, both).exception)
 

@@ -149,6 +149,40 @@ def test_stress_of_the_parts_is_that_of_the_load_case_far_below_the_first_mode(s
     assert found.part_stress[1, 0] == pytest.approx(exact, rel=0.35)
 
 
+def test_paraview_gets_the_stress_of_load_cases_and_vibrations(state, tmp_path):
+    """The greatest on the outer surface is that of the tables, up to what lies inside of the parts."""
+    meshio = pytest.importorskip("meshio")
+    loads = [faying.Load(name, acceleration=(0, 0, g)) for name, g in (("up", 9.81), ("down", -9.81))]
+    static = faying.load_cases(state, loads=loads, modes=False)
+    static.save(tmp_path / "loads.nc")
+    _, *every = faying.load(tmp_path / "loads.nc").save_vtu(tmp_path / "loads.pvd")
+    assert [one.name for one in every] == ["loads-1.vtu", "loads-2.vtu"]
+    for file, stress in zip(every, static.stress, strict=True):
+        read = meshio.read(file)
+        sizes = read.point_data["von Mises stress [Pa]"]
+        assert sizes.max() == pytest.approx(stress.max(), rel=1e-6)
+        spread = read.point_data["greatest principal stress [Pa]"] - read.point_data["least principal stress [Pa]"]
+        # Tresca's stress is von Mises' to 15 % (1 to 2/sqrt 3)
+        assert np.all((spread > (1 - 1e-6) * sizes) & (spread < 1.1548 * sizes))
+    moved = np.array([meshio.read(file).point_data["displacement [m]"] for file in every])
+    assert np.linalg.norm(moved, axis=2).max(axis=1) == pytest.approx(static.displacement, rel=1e-6)
+    assert np.einsum("ni,ni->", *moved) < 0
+    (shaken,) = faying.vibration(state, [noise(1e-4)])
+    _, file = shaken.save_vtu(tmp_path / "noise.vtu")
+    fields = meshio.read(file).point_data
+    one, three = (fields[f"von Mises stress [Pa], {k} sigma"] for k in (1, 3))
+    assert one.max() == pytest.approx(shaken.part_stress[1].max(), rel=1e-6)
+    assert three == pytest.approx(3 * one)
+
+
+def test_densities_of_motion_hold_its_rms(state):
+    """The integrals over the band of displacement and velocity along the input."""
+    (found,) = faying.vibration(state, [noise(1e-3, direction=(0, 0, 1))])
+    for curve, rms in ((found.curve_motion, found.displacement), (found.curve_velocity, found.velocity)):
+        squares = np.trapezoid(curve[1], found.line_frequency, axis=1)
+        assert np.sqrt(squares) == pytest.approx(rms[1, :, 2], rel=0.02)
+
+
 def test_the_head_slides_at_the_deflection_of_a_guided_cantilever():
     """mu F L^3/(12 E I) with the shear of the beam, 1 + phi, phi = 12 E I/(kappa G A L^2); nu = 0, kappa = 6/7."""
     state = bars(held=True, **HEAD).structure.solve(preload=PRELOAD, modes=3)

@@ -297,12 +297,11 @@ def _stress(structure: Structure, states: Sequence[LoadedCase], nodes: Index) ->
     moved = np.stack([structure.strained(s.preload) for s in states], axis=1)
     found = part_stresses(structure.mesh, structure.materials, moved)
     size, place, spread = greatest_stresses(found, structure.mesh.points)
-    outer = at_outline(found, len(structure.mesh.points), nodes)
     return {
+        **at_outline(found, len(structure.mesh.points), nodes),
         "stress": size.T,
         "stress_place": np.moveaxis(place, 2, 0),
         "stress_spread": spread.T,
-        "von_mises": outer.T.astype("f4"),
     }
 
 

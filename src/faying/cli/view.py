@@ -2,6 +2,7 @@
 
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -23,7 +24,8 @@ def command(file: Path, out: Path | None, unit: str | None, vtu: Path | None, sh
     Writes one page that opens anywhere, with everything inside, and opens it in the browser. A study shows its mesh
     with joints, bolts, supports and masses; a result its moving modes and the maps of its joints; a click on a face
     tells its number, name, part, area and centre. With --vtu a result is written for ParaView in place of the page:
-    NAME.pvd and one .vtu for each preload, with shapes, pressure, gap, slip and stiffness.
+    NAME.pvd and one .vtu for each preload, with shapes, stress, pressure, gap, slip and stiffness. So are load cases
+    and vibrations, with their stress.
     """
     import webbrowser
 
@@ -42,13 +44,17 @@ def command(file: Path, out: Path | None, unit: str | None, vtu: Path | None, sh
 
 
 def _for_paraview(file: Path, vtu: Path, *, page_too: bool) -> None:
-    from faying.result import Result
+    from faying.saved import load
 
-    if kind_of(file) is not RESULT:
-        raise InputError(f"--vtu writes a result (.nc) for ParaView; {file.name} is none. Run the study first")
+    found: Any = load(file) if kind_of(file) is RESULT else None
+    if not hasattr(found, "save_vtu"):
+        raise InputError(
+            f"--vtu writes a result, load cases or a vibration (.nc) for ParaView; {file.name} is none. Run the study "
+            "first"
+        )
     if page_too:
         raise InputError("--vtu writes no page; leave out --out and --unit")
-    for made in Result.load(file).save_vtu(vtu):
+    for made in found.save_vtu(vtu):
         click.echo(f"written: {made}")
 
 

@@ -14,6 +14,7 @@ from faying.typing import Array, Index
 
 CHUNK = 20_000  # elements at a time
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))  # of the axes, in the order of the six components
+PLACES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])  # of the components in the tensor
 # von Mises' stress squared is s' SQUARE s
 SQUARE = np.zeros((6, 6))
 SQUARE[:3, :3] = 1.5 * np.eye(3) - 0.5
@@ -39,6 +40,12 @@ class PartStress:
     def von_mises(self) -> Array:
         """Von Mises' stress (n, k) [Pa]."""
         return von_mises(self.stress)
+
+    @property
+    def principal(self) -> tuple[Array, Array]:
+        """Greatest and least principal stress (n, k) [Pa], tension above 0."""
+        least, _, greatest = np.moveaxis(np.linalg.eigvalsh(np.moveaxis(self.stress[:, PLACES], -1, 1)), -1, 0)
+        return greatest, least
 
 
 def von_mises(stress: Array) -> Array:
@@ -97,12 +104,17 @@ def greatest_stresses(found: Mapping[str, PartStress], points: Array) -> tuple[A
     return np.array(sizes), np.array(places), np.array(spreads)
 
 
-def at_outline(found: Mapping[str, PartStress], count: int, nodes: Index) -> Array:
-    """Von Mises' stress [Pa] (nodes, k) at some of the `count` nodes of a mesh; the greater where parts share one."""
-    every = np.zeros((count, next(iter(found.values())).stress.shape[2]))
+def at_outline(found: Mapping[str, PartStress], count: int, nodes: Index) -> dict[str, Array]:
+    """Stress [Pa] (k, nodes) at some of the `count` nodes of a mesh; the farther from 0 where parts share one.
+
+    Returns:
+        That of von Mises, and the greatest and the least principal stress, as `OuterStress` has them.
+    """
+    every = np.zeros((3, count, next(iter(found.values())).stress.shape[2]))
     for one in found.values():
-        every[one.nodes] = np.maximum(every[one.nodes], one.von_mises)
-    return np.asarray(every[nodes])
+        fields, known = np.array([one.von_mises, *one.principal]), every[:, one.nodes]
+        every[:, one.nodes] = np.where(np.abs(fields) > np.abs(known), fields, known)
+    return dict(zip(("von_mises", "tension", "compression"), np.swapaxes(every[:, nodes], 1, 2), strict=True))
 
 
 def _at_nodes(points: Array, cells: Index, solid: Solid, moved: Array, free: float) -> tuple[Array, Array]:

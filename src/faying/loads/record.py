@@ -1,6 +1,7 @@
 """What a preloaded structure does under its load cases: a record of arrays, on disk and back."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -9,8 +10,10 @@ from faying.errors import InputError
 from faying.joint.figure import DrawnFace, face_axes
 from faying.misuse import checked_call, shortened
 from faying.notes import Note
-from faying.result.fields import Recorded, in_units, listed, optional, variable
+from faying.result.fields import Recorded, group, in_units, listed, optional, variable
+from faying.result.groups import OuterStress
 from faying.result.provenance import Provenance
+from faying.result.vtk import write_states
 from faying.style import headline, percent
 from faying.typing import Array, Index
 from faying.units import show
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
 
 MAX_CASES = 8  # that a summary has a line for
 ENOUGH = 0.01  # departure from the linear answer up to which superposition does
-MAPS = ("point",)  # dimensions of what only a file holds, not the JSON
+MAPS = ("point", "node", "triangle")  # dimensions of what only a file holds, not the JSON
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -145,6 +148,7 @@ class LoadCases(Recorded):
     rest_pressure: Array = variable("point", "Pa", "pressure before any load", "points/")
     pressure: Array = variable("case point", "Pa", "pressure", "points/")
     shear: Array = variable("case point", "Pa", "shear by the load", "points/")
+    surface: OuterStress | None = group("surface")
     intervals: LoadIntervals | None = None
     notes: tuple[Note, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)
@@ -191,8 +195,26 @@ class LoadCases(Recorded):
             "axis": ("x", "y", "z"),
             **({"part": self.parts} if self.parts else {}),
             **({"dowel": self.dowels} if self.dowels else {}),
+            **({"state": self.cases} if self.surface else {}),
             **modes,
         }
+
+    @checked_call
+    def save_vtu(self, path: str | Path) -> list[Path]:
+        """Write files for ParaView: NAME.pvd, and one .vtu for each case with displacement and stress.
+
+        Args:
+            path: NAME.pvd or NAME.vtu; a folder that is not there is made.
+
+        Returns:
+            The paths of all files, the .pvd first; ParaView's time is the number of the case, from 1.
+
+        Raises:
+            InputError: The name ends in something else, or a file cannot be written.
+        """
+        surface = self.surface
+        states = {} if surface is None else {name: surface.fields(k) for k, name in enumerate(self.cases)}
+        return write_states(surface, states, path)
 
     def index(self, case: str) -> int:
         """Return the number of a case, from 0. Raises InputError that lists the cases."""

@@ -11,7 +11,7 @@ from faying.case.case import Case, Progress, bare
 from faying.case.provenance import provenance
 from faying.case.service_bolts import ServiceBolt, head_frictions, service_bolts
 from faying.errors import InputError
-from faying.fe.stress import greatest_stresses, part_stresses
+from faying.fe.stress import at_outline, greatest_stresses, part_stresses
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.load_path import LoadPaths
@@ -30,6 +30,7 @@ from faying.notes import Note, percent
 from faying.numerics.follow import partners
 from faying.numerics.shifted import Shifted
 from faying.numerics.single import factorise_roughly
+from faying.result.groups import OuterStress
 from faying.result.provenance import Provenance
 from faying.study.load import Load, in_order
 from faying.study.study import Study
@@ -308,14 +309,25 @@ def _dowels(structure: BoltedStructure, motions: Sequence[Array]) -> dict[str, A
 def _stress(
     structure: BoltedStructure, rest: Array, motions: Sequence[Array], strains: Sequence[Mapping[str, float]]
 ) -> dict[str, Any]:
-    """The greatest stress of each part under the preload and the motion [m] of each case, with its heat."""
-    mesh = structure.mesh
-    every = [
-        greatest_stresses(part_stresses(mesh, structure.materials, (rest + one)[:, None], free), mesh.points)
-        for one, free in zip(motions, strains, strict=True)
-    ]
-    size, place, spread = (np.stack([one[k][..., 0] for one in every]) for k in range(3))
-    return {"parts": tuple(mesh.parts), "stress": size, "stress_place": place, "stress_spread": spread}
+    """The stress of each part under the preload and the motion [m] of each case, with its heat: where it is greatest,
+    and on the outer surface.
+    """
+    mesh, outer = structure.mesh, structure.surface()
+    greatest, fields = [], []
+    for one, free in zip(motions, strains, strict=True):
+        found = part_stresses(mesh, structure.materials, (rest + one)[:, None], free)
+        greatest.append(greatest_stresses(found, mesh.points))
+        fields.append(at_outline(found, len(mesh.points), outer.nodes))
+    size, place, spread = (np.stack([one[k][..., 0] for one in greatest]) for k in range(3))
+    surface = OuterStress(
+        outline=mesh.points[outer.nodes],
+        triangles=outer.triangles,
+        part_of_triangle=outer.part_of_triangle,
+        motion=np.stack([one.reshape(-1, 3)[outer.nodes] for one in motions]),
+        **{name: np.concatenate([one[name] for one in fields]) for name in fields[0]},
+    )
+    of_parts = {"stress": size, "stress_place": place, "stress_spread": spread}
+    return {"parts": tuple(mesh.parts), "surface": surface, **of_parts}
 
 
 def _greatest(motion: Array) -> float:

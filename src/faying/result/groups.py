@@ -5,6 +5,12 @@ from dataclasses import dataclass
 from faying.result.fields import Arrays, optional, variable
 from faying.typing import Array, Index
 
+STRESSES = {
+    "von_mises": "von Mises stress [Pa]",
+    "tension": "greatest principal stress [Pa]",
+    "compression": "least principal stress [Pa]",
+}
+
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Levels(Arrays):
@@ -25,6 +31,24 @@ class Levels(Arrays):
     high: Array = variable("load level mode", "1", "upper end of damping at a level", "modes/level_high", gaps=True)
     slip: Array = variable("load level mode", "1", "damping by slip at a level", "modes/level_slip", gaps=True)
     error: Array = variable("load level mode", "1", "error of damping by slip", "modes/level_error", gaps=True)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class OuterStress(Arrays):
+    """The outer surface with the stress in some states; of random vibration the rms, of which there is no sign."""
+
+    outline: Array = variable("node axis", "m", "nodes of the outer surface", "surface/position")
+    triangles: Index = variable("triangle corner", "1", "triangles between them", "surface/", dtype="i8")
+    part_of_triangle: Index = variable("triangle", "1", "part of each triangle, from 0", "surface/", dtype="i8")
+    von_mises: Array = variable("state node", "Pa", "stress of von Mises", "surface/", dtype="f4")
+    tension: Array | None = optional("state node", "Pa", "greatest principal stress", "surface/", dtype="f4")
+    compression: Array | None = optional("state node", "Pa", "least principal stress", "surface/", dtype="f4")
+    motion: Array | None = optional("state node axis", "m", "displacement by the load", "surface/", dtype="f4")
+
+    def fields(self, state: int) -> dict[str, Array]:
+        """What is known of one state at the nodes, by name and unit."""
+        names = {"motion": "displacement [m]", **STRESSES}
+        return {text: every[state] for name, text in names.items() if (every := getattr(self, name)) is not None}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

@@ -180,6 +180,12 @@ class RunRecord(Recorded):
     von_mises: Array | None = optional(
         "load node", "Pa", "stress of von Mises on the outer surface", "surface/", dtype="f4"
     )
+    tension: Array | None = optional(
+        "load node", "Pa", "greatest principal stress on the outer surface", "surface/", dtype="f4"
+    )
+    compression: Array | None = optional(
+        "load node", "Pa", "least principal stress on the outer surface", "surface/", dtype="f4"
+    )
     slip: Array = variable(
         "load point", "m", "tangential displacement of the second face against the first under the preload", "points/"
     )

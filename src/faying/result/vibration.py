@@ -2,14 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from faying.misuse import checked_call
 from faying.notes import Note
-from faying.result.fields import Recorded, in_units, listed, variable
+from faying.result.fields import Recorded, group, in_units, listed, variable
+from faying.result.groups import OuterStress
 from faying.result.provenance import Provenance
+from faying.result.vtk import write_states
 from faying.style import COLUMN, axes_of, colour, drawing, legend_above, new_figure, plain_numbers
 from faying.text import notes_row
 from faying.typing import Array, Index
@@ -71,6 +74,9 @@ class VibrationResponse(Recorded):
     curve: Array = variable(
         "estimate point line", "", "density or amplitude of the acceleration along the input", "curves/acceleration"
     )
+    curve_motion: Array = variable(
+        "estimate point line", "", "the same of the displacement, against supports that move", "curves/displacement"
+    )
     bolt_force: Array = variable("estimate bolt", "N", "change of the force of the bolt", "bolts/force")
     bolt_moment: Array = variable("estimate bolt", "N m", "bending moment, worst end", "bolts/moment", gaps=True)
     bolt_shear: Array = variable("estimate bolt", "N", "force across the bolt", "bolts/shear", gaps=True)
@@ -89,6 +95,7 @@ class VibrationResponse(Recorded):
     slip_margin_worst: Array = variable(
         "estimate joint", "1", "the same round the bolt where it is least", "joints/", gaps=True
     )
+    surface: OuterStress | None = group("surface")
     notes: tuple[Note, ...] = ()
     provenance: Provenance = field(default_factory=Provenance)
 
@@ -106,6 +113,11 @@ class VibrationResponse(Recorded):
         return np.flatnonzero(near if near.any() else strong)
 
     @property
+    def curve_velocity(self) -> Array:
+        """Density or amplitude of the velocity along the input, against supports that move (estimate, point, line)."""
+        return np.asarray(self.curve_motion * (2 * np.pi * self.line_frequency) ** (2 if self.kind == "random" else 1))
+
+    @property
     def life(self) -> Array:
         """Time [s] until each bolt fails, or sweeps until then (estimate, bolt); infinite without damage."""
         with np.errstate(divide="ignore"):
@@ -120,7 +132,30 @@ class VibrationResponse(Recorded):
             "joint": self.joints,
             "part": self.parts,
             "axis": ("x", "y", "z"),
+            **({"state": (self.words,)} if self.surface else {}),
         }
+
+    @checked_call
+    def save_vtu(self, path: str | Path) -> list[Path]:
+        """Write files for ParaView: NAME.pvd and NAME-1.vtu, the outer surface with its stress of von Mises.
+
+        Args:
+            path: NAME.pvd or NAME.vtu; a folder that is not there is made.
+
+        Returns:
+            The paths of both files, the .pvd first.
+
+        Raises:
+            InputError: The name ends in something else, or a file cannot be written.
+        """
+        return write_states(self.surface, {f"{self.title}: {self.name}": self.stress_fields()}, path)
+
+    def stress_fields(self) -> dict[str, Array]:
+        """Stress of von Mises on the outer surface [Pa] (node,), of random vibration at 1 and at 3 sigma."""
+        if self.surface is None:
+            return {}
+        stress, text = self.surface.von_mises[0], "von Mises stress [Pa]"
+        return {text: stress} if self.kind == "sine" else {f"{text}, 1 sigma": stress, f"{text}, 3 sigma": 3 * stress}
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and level, frequency and damping of the modes that are shaken most."""
@@ -145,7 +180,7 @@ class VibrationResponse(Recorded):
             "joints": list(self.joints),
             "parts": list(self.parts),
             "estimates": list(ESTIMATES),
-            **in_units(self, without=("line", "sample")),
+            **in_units(self, without=("line", "sample", "node", "triangle")),
             **{name: {"unit": "1", "values": _finite(values)} for name, values in margins.items()},
             "life": {"unit": "s" if self.kind == "random" else "sweeps", "values": _finite(self.life)},
             "notes": [asdict(note) for note in self.notes],

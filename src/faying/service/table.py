@@ -11,10 +11,10 @@ from faying.units import GRAVITY, in_mm, load_text
 
 Rows = list[list[str]]
 HELP = (
-    "Values are rms of random vibration (heads and margins at 3 sigma), amplitudes of a sweep. Level: acceleration "
-    "where a mode moves most, of it alone. Head: transverse motion over that at which the head slides; above 1 a bolt "
-    "turns loose, between 0.5 and 1 it may. Margin: friction over shear and torque of a joint, and round its worst "
-    "bolt; at 1 it slips."
+    "Values are rms of random vibration (heads and margins at 3 sigma, three times the rms), amplitudes of a sweep. "
+    "Level: acceleration where a mode moves most, of it alone. Head: transverse motion over that at which the head "
+    "slides; above 1 a bolt turns loose, between 0.5 and 1 it may. Margin: friction over shear and torque of a joint, "
+    "and round its worst bolt; at 1 it slips."
 )
 
 
@@ -45,7 +45,7 @@ def mode_rows(found: VibrationResponse) -> Rows:
 
 
 def point_rows(found: VibrationResponse) -> Rows:
-    """One row for each point: acceleration along the axes in g, and displacement."""
+    """One row for each point: acceleration along the axes in g, velocity and displacement."""
     g = found.acceleration / GRAVITY
     worst = np.argmax(g[1], axis=1)
     ends = np.stack([row[np.arange(len(worst)), worst] for row in g])
@@ -53,7 +53,8 @@ def point_rows(found: VibrationResponse) -> Rows:
         ("point [mm]", [in_mm(one).removesuffix(" mm") for one in found.points], ""),
         *((f"{axis} [g]", g[1, :, k], ".3g") for k, axis in enumerate("xyz")),
         ("5 to 95 %", _ends(ends, ".3g"), ""),
-        ("moves [um]", 1e6 * np.linalg.norm(found.displacement[1], axis=1), ".3g"),
+        ("[mm/s]", 1e3 * np.linalg.norm(found.velocity[1], axis=1), ".3g"),
+        ("[um]", 1e6 * np.linalg.norm(found.displacement[1], axis=1), ".3g"),
     )
 
 
@@ -69,6 +70,7 @@ def bolt_rows(found: VibrationResponse) -> Rows:
         ("damage", found.damage[1], ".2g"),
         ("to 95 %", found.damage[2], ".2g"),
         ("life", [_life(found, one) for one in found.life[1].tolist()], ""),
+        ("bending [N m]", found.bolt_moment[1], ".3g"),
         ("head, 95 %", found.head_motion[2], ".2g"),
     )
 

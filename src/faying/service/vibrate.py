@@ -17,6 +17,7 @@ from faying.joint.modal import Vibration
 from faying.joint.springs import Springs
 from faying.notes import Note
 from faying.result.fields import declared
+from faying.result.groups import OuterStress
 from faying.result.provenance import Provenance
 from faying.result.vibration import VibrationResponse
 from faying.service.curves import CurveSets, curve_sets
@@ -96,8 +97,8 @@ def vibrate(base: Shaken, excitation: Excitation) -> VibrationResponse:
     ends = [(answer(sets.at_rest(0), FRICTION[1]), answer(sets.at_rest(2), FRICTION[1]))]
     if sets.least is not None and sets.most is not None:
         ends.append((answer(sets.least, FRICTION[0]), answer(sets.most, FRICTION[2])))
-    place = best.pop("part_place")
-    return _record(given, sets, _with_ends(best, ends), place)
+    place, stress = best.pop("part_place"), best.pop("outer")
+    return _record(given, sets, _with_ends(best, ends), place, stress)
 
 
 def _needed(excitation: Excitation, force: float, curve: ModeCurve) -> float:
@@ -172,17 +173,20 @@ def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> 
     pairs = zip(given.base.curves, moments, strict=True)
     out["damage"] = np.array([_most_damage(curve, one.reshape(-1, 4)) for curve, one in pairs])
     full = np.concatenate([coordinates, np.ones((1, len(frequencies)))])
-    out["part_stress"], out["part_place"] = _worst_stress(given, products(full))
+    out |= _part_stress(given, products(full))
     lines = _coordinates(excited, speeds, dampings, given.lines)
-    out["curve"] = np.abs(_along(excited, lines, 1.0, given.lines)) ** 2 * table.at(given.lines)
-    return out
+    along = _along(excited, lines, 1.0, given.lines)
+    return out | {name: np.abs(one) ** 2 * table.at(given.lines) for name, one in along.items()}
 
 
-def _worst_stress(given: _Answering, products: Array) -> tuple[Array, Array]:
-    """The greatest stress of von Mises in each part (p,) [Pa], and its place (p, 3) [m]."""
+def _part_stress(given: _Answering, products: Array) -> dict[str, Array]:
+    """Stress of von Mises: the greatest in each part (p,) [Pa], its place (p, 3) [m], and at every node (n,)."""
     stress, points = given.excited.part_stress(products), given.base.structure.mesh.points
-    nodes = [one.nodes[int(np.argmax(s))] for one, s in zip(given.excited.stress.values(), stress, strict=True)]
-    return np.array([one.max() for one in stress]), points[nodes]
+    every, worst = np.zeros(len(points)), []
+    for one, values in zip(given.excited.stress.values(), stress, strict=True):
+        worst.append(one.nodes[int(np.argmax(values))])
+        every[one.nodes] = np.maximum(every[one.nodes], values)
+    return {"part_stress": np.array([one.max() for one in stress]), "part_place": points[worst], "outer": every}
 
 
 def _most_damage(curve: FatigueCurve | None, moments: Array) -> float:
@@ -238,10 +242,12 @@ def _sine(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> di
     energy = np.sum(np.abs(excited.speeds[:, None] * coordinates) ** 2, axis=0)
     most = int(np.argmax(energy))  # where the most energy is
     full = np.append(coordinates[:, most], amplitude[most])
-    out["part_stress"], out["part_place"] = _worst_stress(given, np.real(np.outer(full, full.conj())))
-    along = np.abs(_along(excited, coordinates, amplitude, frequencies))
-    out["curve"] = np.stack([np.interp(given.lines, frequencies, one) for one in along])
-    return out
+    out |= _part_stress(given, np.real(np.outer(full, full.conj())))
+    along = _along(excited, coordinates, amplitude, frequencies)
+    return out | {
+        name: np.stack([np.interp(given.lines, frequencies, one) for one in np.abs(every)])
+        for name, every in along.items()
+    }
 
 
 def _swept_damage(curve: FatigueCurve | None, stress: Array, frequencies: Array) -> float:
@@ -252,10 +258,12 @@ def _swept_damage(curve: FatigueCurve | None, stress: Array, frequencies: Array)
     return float(((each[:, 1:] + each[:, :-1]) / 2 @ cycles).max())
 
 
-def _along(excited: Excited, coordinates: Complex, amplitude: Array | float, frequencies: Array) -> Complex:
-    """Absolute acceleration of the points along the excitation [m/s2] (p, n)."""
+def _along(excited: Excited, coordinates: Complex, amplitude: Array | float, frequencies: Array) -> dict[str, Complex]:
+    """Absolute acceleration [m/s2] and displacement [m] of the points along the excitation (p, n)."""
     acceleration = _acceleration(excited, coordinates, amplitude, frequencies)
-    return np.asarray(np.einsum("pin,i->pn", acceleration, excited.excitation.direction))
+    both = {"curve": acceleration, "curve_motion": excited.transfer("motion", coordinates, amplitude)}
+    along = excited.excitation.direction
+    return {name: np.asarray(np.einsum("pin,i->pn", one, along)) for name, one in both.items()}
 
 
 def _acceleration(excited: Excited, coordinates: Complex, amplitude: Array | float, frequencies: Array) -> Complex:
@@ -339,7 +347,10 @@ def _with_ends(
     return out
 
 
-def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], place: Array) -> VibrationResponse:
+def _record(
+    given: _Answering, sets: CurveSets, found: Mapping[str, Array], place: Array, stress: Array
+) -> VibrationResponse:
+    """The answer; place: of the greatest stress of each part (p, 3) [m]; stress: at every node (n,) [Pa]."""
     base, excited, structure = given.base, given.excited, given.base.structure
     excitation, elastic = excited.excitation, slice(excited.rigid, None)
     times = excitation.duration if excitation.kind == "random" else 1 / excitation.rate if excitation.rate else None
@@ -353,6 +364,7 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
         curve = sets.best[k - 1]
         reach[k - 1] = curve.amplitudes.max(initial=0.0) * curve.speed**2 * excited.greatest[elastic][k - 1]
     levels, damping = _curves(given, sets.best, found)
+    outer = structure.surface()
     recorded = declared(VibrationResponse).keys() - {"damage"}  # that of one second, or of one sweep
     return VibrationResponse(
         title=base.title,
@@ -366,6 +378,12 @@ def _record(given: _Answering, sets: CurveSets, found: Mapping[str, Array], plac
         joints=tuple(joint.name for joint in structure.joints),
         parts=tuple(structure.mesh.parts),
         part_stress_place=place,
+        surface=OuterStress(
+            outline=structure.mesh.points[outer.nodes],
+            triangles=outer.triangles,
+            part_of_triangle=outer.part_of_triangle,
+            von_mises=stress[None, outer.nodes],
+        ),
         direction=np.array(excitation.direction),
         input_frequency=excitation.table.frequencies,
         input_value=excitation.table.values,

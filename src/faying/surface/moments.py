@@ -1,29 +1,20 @@
-"""D and G from the spectral moments of a profile or of a band of a surface's spectrum.
+"""The slope of a power law from the ratio of two spectral moments.
 
 The finite Weierstrass-Mandelbrot series with frequencies f_n and amplitudes A_n^2 = c G^(2Ds-2) ln(gamma) f_n^-(4-2Ds)
-has m_2k = (2 pi)^(2k) sum_n A_n^2 f_n^(2k) / 2. m2/m0 depends on Ds alone, so one root gives Ds and m0 then gives G; m4
-is left over and tells whether the heights obey the law. The network of Jiang et al. (FPENN, doi:10.1016/
+has m_2k = (2 pi)^(2k) sum_n A_n^2 f_n^(2k) / 2. m2/m0 depends on Ds alone, so one root gives Ds; so it is in a band of
+a surface's spectrum. The network of Jiang et al. (FPENN, doi:10.1016/
 j.chaos.2022.112440), from which the JK model has D and G, learns this same map.
 """
 
-from math import log, pi
+from math import log
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from faying.errors import InputError
-from faying.surface.convention import G_from_density, prefactor
-from faying.typing import Array
 
 # Ds is looked for in this range; the power law has no finite variance per octave outside (1, 2)
 LOWEST_DS, HIGHEST_DS = 0.5, 2.5
-
-
-def series_frequencies(length: float, terms: int, gamma: float = 1.5) -> Array:
-    """f_n = gamma^n / length, n = 0 .. terms-1 [1/m]."""
-    if not (length > 0 and terms >= 2 and gamma > 1):
-        raise InputError(f"length = {length}, terms = {terms}, gamma = {gamma}: need length > 0, terms >= 2, gamma > 1")
-    return np.asarray(gamma ** np.arange(terms) / length, float)
 
 
 def invert_ratio(ratio: float, frequency: ArrayLike, weight: ArrayLike) -> float:
@@ -49,22 +40,3 @@ def invert_ratio(ratio: float, frequency: ArrayLike, weight: ArrayLike) -> float
             f"{1 / f.max():.3g} .. {1 / f.min():.3g} m; check the band and the unit of the heights"
         )
     return float(brentq(excess, low, high, xtol=1e-15, rtol=8.9e-16))
-
-
-def from_series_moments(
-    m0: float, m2: float, *, length: float, terms: int, gamma: float = 1.5, convention: str = "yan-komvopoulos"
-) -> tuple[float, float]:
-    """Return (D, G [m]) of the series whose moments are m0 [m2] and m2 [-].
-
-    `length`, `terms` and `gamma` fix its frequencies. Raises InputError for moments that are not positive or that no
-    dimension has.
-    """
-    if not (m0 > 0 and m2 > 0):
-        raise InputError(f"m0 = {m0}, m2 = {m2}: spectral moments are positive")
-    f = series_frequencies(length, terms, gamma)
-    slope = invert_ratio(m2 / m0 / (2 * pi) ** 2, f, f)  # A_n^2 ~ f_n f_n^-(5-2Ds)
-    D = (7 - slope) / 2
-    c = prefactor(convention, gamma)
-    # m0 = B ln(gamma) sum f f^-slope with B = c G^(2Ds-2)/2
-    level = log(m0 / log(gamma)) - log(float(np.sum(f ** (1 - slope))))
-    return D, G_from_density(D, level, c)

@@ -10,7 +10,6 @@ from math import log
 import numpy as np
 
 from faying.errors import FayingError, NotConverged
-from faying.surface.convention import cut_factor
 from faying.surface.estimators.base import Z95, Estimate, Limits, with_intervals
 from faying.surface.form import Prepared
 from faying.surface.heights import sides_of, steps_of
@@ -81,13 +80,3 @@ def size_band(ready: Prepared, limits: Limits, points: float, share: float) -> t
     side = min(sides_of(ready.scan))
     # a scan of a hundred points or so: larger sizes than are good rather than none
     return low, max(share * side, min(3.2 * low, side / 3))
-
-
-def inside(D: float) -> float:
-    """D moved into the open range where the transfer functions exist."""
-    return min(max(D, 2.005), 2.995)
-
-
-def cut_log(D: float, areal: bool) -> float:
-    """ln of a profile's spectrum over the radial spectrum: the mean over directions of a surface, 0 for a profile."""
-    return log(cut_factor(D)) if areal else 0.0

@@ -5,15 +5,9 @@ from math import log
 import numpy as np
 
 from faying.errors import NotConverged
-from faying.surface.convention import structure_coefficient
+from faying.surface.convention import cut_factor, structure_coefficient
 from faying.surface.estimators.base import Estimate, Estimator, Limits, white_rms
-from faying.surface.estimators.scaling import (
-    cut_log,
-    inside,
-    side_of,
-    size_band,
-    through_parts,
-)
+from faying.surface.estimators.scaling import side_of, size_band, through_parts
 from faying.surface.estimators.spectral import clean_band, of_law, spectral_fit, through_draws
 from faying.surface.form import Prepared
 from faying.surface.heights import AreaHeights, LineHeights
@@ -57,7 +51,9 @@ def by_structure(ready: Prepared, limits: Limits, c: float) -> Estimate:
         start = np.array([min(max(slope, 0.05), 1.95), intercept, 0.0])
         found = least_squares(residual, start, bounds=([0.01, -np.inf, -20], [1.999, np.inf, 50])).x
         D = 3 - float(found[0]) / 2
-        k = log(2 * structure_coefficient(inside(D))) + cut_log(inside(D), z.ndim == 2)
+        at = min(max(D, 2.005), 2.995)  # the open range in which the transfer functions exist
+        # of a surface the mean spectrum of its profiles
+        k = log(2 * structure_coefficient(at)) + (log(cut_factor(at)) if z.ndim == 2 else 0.0)
         return D, float(found[1]) - (6 - 2 * D) * middle - k
 
     return through_parts(ready, c, local, size_band(ready, limits, 3, 1 / 16), "the structure function")
