@@ -125,7 +125,7 @@ def row(number: int, beside: int) -> dict[str, Any]:
 
 
 def table(rows: list[dict[str, Any]]) -> str:
-    """Markdown table over all rows, and one of PSD and moments by side and treatment."""
+    """Markdown table over all rows, and one of PSD by side and treatment."""
     names = [*METHODS, "SurfaceTopography PSD", "fracDimPy variogram", "fracDimPy box"]
     head = "| estimator | surfaces | bias of D | spread of D | coverage of D | median half-width | coverage of G |\n"
     head += "|---|---:|---:|---:|---:|---:|---:|\n"
@@ -136,9 +136,8 @@ def table(rows: list[dict[str, Any]]) -> str:
         groups += [(f"with {kind}", [r for r in rows if kind in r["what"]])]
         groups += [(f"without {kind}", [r for r in rows if kind not in r["what"]])]
     groups += [(f"D {a} .. {b}", [r for r in rows if a <= r["D"] < b]) for a, b in ((2.1, 2.3), (2.3, 2.5), (2.5, 2.7))]
-    for method in ("psd", "moments"):
-        parts = [line(label, [r["fits"].get(method) for r in part]) for label, part in groups if part]
-        text += f"\n{method}\n\n" + head.replace("estimator", "surfaces of") + "\n".join(x for x in parts if x) + "\n"
+    parts = [line(label, [r["fits"].get("psd") for r in part]) for label, part in groups if part]
+    text += "\npsd\n\n" + head.replace("estimator", "surfaces of") + "\n".join(x for x in parts if x) + "\n"
     return text
 
 

@@ -47,7 +47,7 @@ def main() -> None:
     scan, G = milled()
     write_scan(scan, path, precision="I")
     print(f"{path}: {path.stat().st_size / 1e6:.2f} MB, put in: D {D}, G {G:.4g} m, Ra {RA * 1e6} um")
-    for method in ("psd", "moments", "structure"):
+    for method in ("psd", "structure"):
         fit = fit_fractal(scan, method)
         low, high = fit.D_interval
         print(

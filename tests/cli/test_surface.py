@@ -42,7 +42,7 @@ def test_json_is_si_and_complete(file, rough, capsys):
     assert document["spacing"] == pytest.approx([2e-6, 2e-6])
     assert document["missing"] == rough.missing
     assert document["roughness"]["Rq"] == pytest.approx(np.nanstd(rough.heights), rel=0.3)
-    estimators = ("psd", "structure", "moments")
+    estimators = ("psd", "structure")
     assert set(document["fits"]) == set(estimators)
     psd = document["fits"]["psd"]
     assert psd["D_interval"][0] < psd["D"] < psd["D_interval"][1]

@@ -29,8 +29,8 @@ def fit_fractal(
 
     Args:
         scan: heights [m] with their spacing; levelled, freed of spikes and filled in before the fit.
-        method: "psd" (power law with white noise fitted to the spectrum; recommended), "moments" (ratio of the
-            spectral moments m2 and m0) or "structure" (structure function).
+        method: "psd" (power law with white noise fitted to the spectrum; recommended) or "structure" (structure
+            function).
         band: shortest and longest wavelength to use instead of what the data support, from twice the spacing to the
             side; [m], or text with a unit.
         degree: of the polynomial that levels the heights, 0 to 8.

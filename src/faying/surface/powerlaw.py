@@ -32,8 +32,7 @@ class FittedPowerLaw:
     `density` is that of Spectrum; `slope` is its slope (5 - 2Ds), one less than that of the areal density.
     `noise` [m4 for a scan, m3 for a profile] is the white level of the two-sided density. `misfit` is the mean
     squared residual over its expected value; the covariance is multiplied by it where it exceeds 1.
-    `response` (3, bins) is the linear answer of (log_level, slope, noise) to the bins' relative residuals; `used`
-    [1/m] and `expected` [m3] are the bins' frequencies and fitted densities.
+    `used` [1/m] and `expected` [m3] are the bins' frequencies and fitted densities.
     """
 
     log_level: float
@@ -44,7 +43,6 @@ class FittedPowerLaw:
     misfit: float
     used: Array
     expected: Array
-    response: Array
 
 
 def smearing(spectrum: Spectrum, frequency: Array, slope: float) -> tuple[Array, Array]:
@@ -164,11 +162,9 @@ def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> F
     bins = _Bins.of(spectrum, low, high)
     free = np.array([True, True, white])
     theta = _scored(bins, free)
-    mu, scaled, fisher = bins.scoring(theta, free)
+    mu, _, fisher = bins.scoring(theta, free)
     covariance = np.zeros((3, 3))
     covariance[np.ix_(free, free)] = np.linalg.pinv(fisher)
-    response = covariance[:, free] @ (scaled * bins.weight[:, None]).T
-    response[2] = np.exp(theta[0]) * (response[2] + theta[2] * response[0])
     misfit = float(np.sum(bins.weight * (bins.y / mu - 1) ** 2)) / max(len(bins.f) - int(free.sum()), 1)
     return FittedPowerLaw(
         log_level=float(theta[0]) + np.log(white_shape(bins.pivot, spectrum.axes)),
@@ -179,7 +175,6 @@ def fit(spectrum: Spectrum, low: float, high: float, *, white: bool = True) -> F
         misfit=misfit,
         used=bins.f,
         expected=mu * white_shape(bins.f, spectrum.axes),
-        response=response,
     )
 
 
@@ -235,7 +230,6 @@ def fit_lines(spectrum: Spectrum, low: float, high: float) -> FittedPowerLaw:
         misfit=max(1.0, scatter / float(np.mean(spectrum.spread[use] ** 2))),
         used=f,
         expected=expected,
-        response=np.zeros((3, len(f))),
     )
 
 

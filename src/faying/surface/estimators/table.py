@@ -8,10 +8,9 @@ from faying.errors import NotConverged
 from faying.surface.convention import cut_factor, structure_coefficient
 from faying.surface.estimators.base import Estimate, Estimator, Limits, white_rms
 from faying.surface.estimators.scaling import side_of, size_band, through_parts
-from faying.surface.estimators.spectral import clean_band, of_law, spectral_fit, through_draws
+from faying.surface.estimators.spectral import of_law, spectral_fit
 from faying.surface.form import Prepared
 from faying.surface.heights import AreaHeights, LineHeights
-from faying.surface.moments import invert_ratio
 from faying.surface.spectrum import structure_function
 from faying.typing import Array, Mask
 
@@ -59,32 +58,12 @@ def by_structure(ready: Prepared, limits: Limits, c: float) -> Estimate:
     return through_parts(ready, c, local, size_band(ready, limits, 3, 1 / 16), "the structure function")
 
 
-def by_moments(ready: Prepared, limits: Limits, c: float) -> Estimate:
-    """Take m2/m0 of the band (white part and window smearing removed) and solve for D, as the ideal series' map does.
-
-    The moments are sums over bins, m_2k = (2 pi)^(2k) sum (S - white) f^(2k) df; G follows from m2, the better known
-    of the two. Intervals by drawing the bins from their gamma law and repeating the inversion.
-    """
-    band = clean_band(ready, limits)
-    f, width = band.frequency, band.width
-
-    def solve(clean: Array) -> tuple[float, float]:
-        m0, m2 = float(np.sum(clean * width)), float(np.sum(clean * f**2 * width))
-        if m0 <= 0 or m2 <= 0:
-            raise NotConverged("the spectral moments of the band are not positive once the noise is taken out")
-        slope = invert_ratio(m2 / m0, f, width)
-        return slope, log(m2) - log(float(np.sum((f / band.law.pivot) ** -slope * f**2 * width)))
-
-    return through_draws(ready, band, c, solve)
-
-
 BAND = "a band of a factor 5 in wavelength"
 ESTIMATORS: dict[str, Estimator] = {
     name: Estimator(name=name, needs=needs, bias=bias, estimate=estimate)
     for name, estimate, needs, bias in (
         ("psd", by_psd, BAND, "none seen"),
         ("structure", by_structure, "lags from 3 spacings to a sixteenth of the side", "up to +0.1 in D below 2.2"),
-        ("moments", by_moments, BAND, "none seen; its interval is twice as wide as that of psd"),
     )
 }
 METHODS = tuple(ESTIMATORS)
