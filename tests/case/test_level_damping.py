@@ -11,11 +11,13 @@ from faying.answer.run import run
 from faying.case import level_damping
 from faying.case.level_damping import FRICTION, REST
 from faying.cli.run import text
+from faying.distribution import Distribution
 from faying.export import universal
 from faying.form.form import Form
 from faying.notes import Note, grave
 from faying.output import table
 from faying.study import Study
+from faying.study.keys.uncertain import Input, UncertainChoice
 from tests.helpers import studies
 
 BLOCKS = Path(__file__).parents[2] / "examples" / "two-blocks" / "study.toml"
@@ -68,6 +70,21 @@ def test_a_friction_that_is_given_leaves_nothing_open(study, found):
     assert given.levels.slip == pytest.approx(found.levels.slip, rel=0.05, abs=1e-7)
     assert not [note for note in given.notes if note.code == "level-damping"]
     assert [note for note in found.notes if note.code == "level-damping"]
+
+
+def test_a_friction_that_scatters_has_its_own_ends(study, found):
+    """As [uncertain] lists it, also where the joint has a number: the prior again gives what no number at all does.
+
+    Its least friction is 0.0288 as a lognormal, for 0.03.
+    """
+    spread = Distribution(kind="lognormal", centre=FRICTION[1], spread=np.log(FRICTION[2] / FRICTION[1]) / 1.6449)
+    listed = UncertainChoice(inputs=(Input(key="joint.friction", distribution=spread, unit=""),))
+    joints = tuple(replace(joint, friction=0.2) for joint in study.joints)
+    scatters = run(replace(study, joints=joints, uncertain=listed)).levels
+    assert scatters.slip == pytest.approx(found.levels.slip, rel=1e-3)
+    assert scatters.low == pytest.approx(found.levels.low, rel=1e-3)
+    assert scatters.high == pytest.approx(found.levels.high, rel=0.05)
+    assert np.max(scatters.high / scatters.damping) > 1.2
 
 
 def test_what_is_not_known_of_friction_and_of_rest_adds_by_squares(study, found, monkeypatch):

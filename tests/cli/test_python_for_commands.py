@@ -115,6 +115,19 @@ def test_a_joint_in_a_model(tmp_path):
         assert file.read_bytes() == (tmp_path / "command" / file.name).read_bytes()
 
 
+LOSSY = """
+[response]
+from = "100 Hz"
+to = "2 kHz"
+points = 5
+structural_loss = 0.03
+[[response.input]]
+point = ["40 mm", "15 mm", "15 mm"]
+direction = [0, 0, 1]
+[[response.output]]
+point = ["40 mm", "15 mm", "15 mm"]
+direction = [0, 0, 1]
+"""
 SHAKEN = """
 [[vibration]]
 name = "noise"
@@ -177,7 +190,7 @@ def test_a_report(small, tmp_path):
 @pytest.mark.slow
 def test_vibration_in_service(small, tmp_path):
     """The command prints what the result of a run has; faying.load reads what it saves."""
-    text = small.read_text().replace("[[joint]]\n", "[[joint]]\nfriction = 0.2\n") + SHAKEN
+    text = small.read_text().replace("[[joint]]\n", "[[joint]]\nfriction = 0.2\n") + LOSSY + SHAKEN
     study = tmp_path / "shaken.toml"
     for file in small.parent.iterdir():
         if file.is_file() and file != small:
@@ -188,3 +201,5 @@ def test_vibration_in_service(small, tmp_path):
     assert plain([one.to_dict() for one in result.vibrations]) == printed["vibrations"]
     assert plain(faying.load(tmp_path / "v-1.nc").to_dict()) == printed["vibrations"][0]
     assert any(section.name == "vibration" for section in sections(result))
+    # the loss factor of the parts, which stands in [response], damps in both
+    assert np.all(result.vibrations[0].rest_damping[1] > 0.01)

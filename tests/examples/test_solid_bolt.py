@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import faying
 from faying.case.case import build, checked_mesh
 from faying.fe.sides import face_centre
 from faying.joint.modal import ModesChoice
@@ -46,6 +47,20 @@ def test_every_joint_carries_the_preload(structure):
     found = tighten(structure, structure.assembly(), [2e3])
     for joint, pressure in zip(structure.joints, found.pressures, strict=True):
         assert joint.interface.weights @ pressure == pytest.approx(2e3, rel=1e-6), joint.name
+
+
+def test_a_nut_that_is_bonded_where_it_overlaps_its_seat_is_held_in_check_and_run(tmp_path):
+    """87 of the 139 nodes under the nut are those of the seat."""
+    text = STUDY.read_text().replace('"blocks-and-bolt.step"', f'"{STUDY.parent.as_posix()}/blocks-and-bolt.step"')
+    start, end = text.index('name = "nut"'), text.index("[[bolt]]")
+    nut = 'name = "nut"\nfaces = ["bolt.nut", "lower.seat"]\nbonded = true\n\n'
+    path = tmp_path / "bonded.toml"
+    path.write_text(text[:start] + nut + text[end:])
+    assert not faying.check(path).faults
+    mesh = build(Study.read(path)).mesh
+    assert mesh.is_shared("bolt.nut", wholly=False)
+    assert not mesh.is_shared("bolt.nut")
+    assert not mesh.is_shared("bolt.head", wholly=False)
 
 
 def test_a_bolt_that_is_no_part_is_named(study):

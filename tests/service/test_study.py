@@ -14,6 +14,14 @@ BASE = """
 [[vibration]]
 psd = [["20 Hz", "0.01 g^2/Hz"], ["80 Hz", "0.04 g^2/Hz"]]
 """
+MINE = """
+[material.mine]
+E = "200 GPa"
+nu = 0.3
+density = "7800 kg/m^3"
+friction = 0.2
+hardness = "1 GPa"
+"""
 
 
 @pytest.fixture
@@ -34,6 +42,28 @@ def test_check_and_run_refuse_a_base_that_is_not_there_in_the_same_words(study):
     assert any("moves the supports, and there are none" in one.text for one in found.faults)
     with pytest.raises(faying.InputError, match="moves the supports, and there are none"):
         faying.run(path)
+
+
+HELD = '[[support]]\nface = "lower.under"\ndirections = {}\n'
+PUSHED = BASE.replace("g^2/Hz", "N^2/Hz") + 'face = "lower.under"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (HELD.format(["z"]) + BASE + "direction = [1, 0, 1]\n", r"no support holds the structure along direction"),
+        (HELD.format(["x", "y", "z"]) + PUSHED, "its force acts where supports hold"),
+        (HELD.format(["z"]) + PUSHED, "its force acts where supports hold"),
+        ('[[load]]\nname = "hot"\ntemperature = { lower = "5 K" }\n', "has no expansion; give the material one"),
+    ],
+)
+def test_check_finds_what_shakes_and_heats_nothing(study, text, why):
+    path = shaken(study, text)
+    path.write_text(path.read_text().replace('material = "45 steel"', 'material = "mine"') + MINE)
+    found = faying.check(path)
+    assert any(why in one.text for one in found.faults)
+    with pytest.raises(faying.InputError, match=why):
+        faying.load_cases(path, modes=False) if "[[load]]" in text else faying.run(path)
 
 
 @pytest.mark.parametrize(

@@ -295,6 +295,23 @@ def test_a_curve_of_its_own_has_the_slope_of_haibach_below(made):
     assert bolt.damage(80e6, 1e6, mean=5e3) == pytest.approx(2.0**5, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("table", "limit", "origin"),
+    [
+        ({"curve": {"endurance": "4 MPa", "knee": 1e6, "slope": 5}}, 4e6, "as given"),
+        # half of category 36, bolts of 30 mm and less as they are
+        ({"fatigue": "iec"}, 18e6, "IEC 61400-6"),
+        ({}, 0.85 * (150 / 8 + 45) * 1e6, "rolled before"),
+    ],
+)
+def test_the_alternating_stress_is_held_against_the_curve_of_the_sheet(made, table, limit, origin):
+    (sheet,) = bolt_sheet(made(bolt_sheet=SAID | table)).sheets
+    row = sheet.row("sigma_a")
+    assert row.limit.value == pytest.approx(limit, rel=1e-12)
+    assert origin in row.limit.name
+    assert row.verdict == ("ok" if row.result.value <= limit else "exceeded")
+
+
 def test_a_thread_rolled_after_heat_treatment_has_one_endurance_in_sheet_and_service(made):
     """The sheet's own step at the same mean force, and at yield that of a thread rolled before."""
     study = made(bolt_sheet=SAID | {"rolled": "after"})

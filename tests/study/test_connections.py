@@ -443,8 +443,9 @@ direction = [0, 0, 1]
 
 
 def test_response_and_damping(folder):
-    spec = study(folder, RESPONSE).response
-    assert (spec.first, spec.last, spec.points, spec.structural_loss) == (100.0, 2000.0, 50, 0.002)
+    found = study(folder, RESPONSE)
+    spec = found.response
+    assert (spec.first, spec.last, spec.points, found.parts_loss) == (100.0, 2000.0, 50, 0.002)
     assert spec.inputs == (((0.0, 0.0, pytest.approx(15e-3)), (0.0, 0.0, 1.0)),)
     assert spec.outputs[0][0][0] == pytest.approx(40e-3)
     assert study(folder).response is None

@@ -14,7 +14,7 @@ from faying.fe.sides import face_centre
 from faying.joint.attachments import nearest_node
 from faying.joint.bolted import BoltedStructure
 from faying.joint.joint import known_face
-from faying.study.load import Displacement, Force, Load, not_held
+from faying.study.load import Displacement, Force, Load, no_expansion, not_held
 from faying.typing import Array
 from faying.units import show
 
@@ -168,11 +168,7 @@ def _heat(structure: BoltedStructure, changes: Mapping[str, float], what: str) -
 def _expansion(material: object, what: str) -> float:
     found = getattr(material, "expansion", None)
     if found is None:
-        name = getattr(material, "name", "")
-        raise InputError(
-            f"{what} changes its temperature, and its material {name!r} has no expansion; give the material one, such "
-            'as "12e-6 1/K" for steel'
-        )
+        raise InputError(no_expansion(what, getattr(material, "name", "")))
     return float(found)
 
 

@@ -1,6 +1,6 @@
 """From a study to its case: mesh, joints with their laws, bolts, supports, all ready to be solved."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Self
 
@@ -33,8 +33,9 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
-from faying.study.load import Displacement, Force, Pressure, not_held
+from faying.study.load import Displacement, Force, Pressure, no_expansion, not_held
 from faying.study.study import Study
+from faying.study.vibration import held_still, not_along
 from faying.study.vibration import not_held as not_shaken
 from faying.typing import Array
 from faying.units import show
@@ -277,12 +278,7 @@ def name_faults(
         for key, what, name, face in named_faces(study)
         if face not in faces
     ]
-    faults += [*_heated(study), *_moved(study)]
-    faults += [
-        (f"vibration[{k}]", not_shaken(one.name))
-        for k, one in enumerate(study.vibrations, 1)
-        if one.base and not study.supports
-    ]
+    faults += [*_heated(study), *_moved(study), *_unshaken(study)]
     return faults or [*_loose_parts(study, parts, faces, one_body), *_idle_bolts(study)]
 
 
@@ -352,11 +348,26 @@ def named_faces(study: Study) -> list[tuple[str, str, str, str]]:
     return named
 
 
+def _firm(study: Study) -> set[tuple[str, str]]:
+    """Faces and directions in which supports without stiffness hold them."""
+    firm = [one for one in study.supports if one.stiffness is None and one.whole]
+    return {(one.face, axis) for one in firm for axis in one.directions}
+
+
+def _unshaken(study: Study) -> Iterator[tuple[str, str]]:
+    """Vibrations that move no support, move them where they hold nothing, or push where they hold all."""
+    firm, some = _firm(study), {axis for one in study.supports for axis in one.directions}
+    for k, one in enumerate(study.vibrations, 1):
+        along = {axis for axis, size in zip("xyz", one.direction, strict=True) if size}
+        if one.base and not along <= some:
+            yield f"vibration[{k}]", not_along(one) if some else not_shaken(one.name)
+        if one.force is not None and firm.issuperset((one.force.face, axis) for axis in along):
+            yield f"vibration[{k}].face", held_still(one)
+
+
 def _moved(study: Study) -> list[tuple[str, str]]:
     """Displacements of loads along directions in which no support without stiffness holds the face."""
-    held = [
-        (one.face, axis) for one in study.supports if one.stiffness is None and one.whole for axis in one.directions
-    ]
+    held = _firm(study)
     return [
         (f"load[{k}].displacement[{n}].displacement", not_held(load.name, one.face, axis))
         for k, load in enumerate(study.load_cases, 1)
@@ -366,19 +377,17 @@ def _moved(study: Study) -> list[tuple[str, str]]:
     ]
 
 
-def _heated(study: Study) -> list[tuple[str, str]]:
-    """Names in the temperatures of loads that are neither part nor bolt."""
+def _heated(study: Study) -> Iterator[tuple[str, str]]:
+    """Temperatures of what is neither part nor bolt, and of materials of which no expansion is known."""
     known = [*study.parts, *(bolt.name for bolt in study.bolts)]
-    return [
-        (
-            f"load[{k}].temperature",
-            f"load {load.name!r}: temperature of {name!r}, which is neither a part nor a bolt; give one of "
-            f"{', '.join(map(repr, known))}",
-        )
-        for k, load in enumerate(study.load_cases, 1)
-        for name in load.temperature
-        if name not in known
-    ]
+    for k, load in enumerate(study.load_cases, 1):
+        for name in load.temperature:
+            what, key = f"load {load.name!r}: ", f"load[{k}].temperature"
+            if name not in known:
+                words = f"temperature of {name!r}, which is neither a part nor a bolt; give one of "
+                yield key, f"{what}{words}{', '.join(map(repr, known))}"
+            elif name in study.parts and (material := study.materials[study.parts[name]]).expansion is None:
+                yield key, no_expansion(f"{what}part {name!r}", material.name)
 
 
 def structure_of(

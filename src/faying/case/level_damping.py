@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from faying.case.case import Case
+from faying.case.scatter import LEVELS, Known, of_number, stated
 from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
@@ -41,13 +42,14 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> Levels
     # springs per node do not slip
     if not choice.levels or any(joint.per_node for joint in structure.joints):
         return None
-    assumed = assumes_friction(structure)
+    frictions = frictions_of(structure, stated(case.study.uncertain))
+    scatters = bool(np.any(np.ptp(frictions, axis=0)))
     try:
-        coarse = [laws_at(structure, preload, friction, SPRINGS_AT_ENDS) for friction in FRICTION]
-        middle_laws = laws_at(structure, preload, FRICTION[1], SPRINGS)
+        coarse = [cut_laws(structure, preload, friction, SPRINGS_AT_ENDS) for friction in frictions]
+        middle_laws = cut_laws(structure, preload, frictions[1], SPRINGS)
     except InputError:
         return None
-    basis = level_basis(structure, preload, found, coarse[: 1 + assumed], np.full(choice.count, max(choice.levels)))
+    basis = level_basis(structure, preload, found, coarse[: 1 + scatters], np.full(choice.count, max(choice.levels)))
 
     def at(laws: Sequence[Microslip]) -> AtLevels:
         return level_model(structure, preload, basis, laws).at(choice.levels, choice.count)
@@ -55,7 +57,7 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> Levels
     middle = at(middle_laws)
     rest, moved = rest_damping(structure, found, case.study.parts_loss), moved_by_loss(structure, found)
     slip = least = most = middle.damping
-    if assumed:
+    if scatters:
         ends = [at(coarse[0]).damping, np.zeros_like(slip)]
         if np.any(slip > SLIGHT * (rest[1] - rest[0])):
             ends[1] = at(coarse[2]).damping
@@ -73,15 +75,19 @@ def level_damping(case: Case, preload: PreloadState, found: Vibration) -> Levels
     )
 
 
-def assumes_friction(structure: BoltedStructure) -> bool:
-    """Whether the friction of a joint has its prior, since nothing is said of it."""
-    return any(joint.friction is None for joint in structure.joints)
+def assumes_friction(structure: BoltedStructure, known: Known) -> bool:
+    """Whether the friction of a joint has its prior, since nothing is said of it; known: what scatters, by its key."""
+    return any(joint.friction is None and not of_number(known, joint.name, "friction") for joint in structure.joints)
 
 
-def laws_at(structure: BoltedStructure, preload: PreloadState, friction: float, springs: int) -> list[Microslip]:
-    """The law of each joint, cut; friction: where nothing is said of it. Raises InputError as `Microslip.cut`."""
-    given = [friction if joint.friction is None else joint.friction for joint in structure.joints]
-    return cut_laws(structure, preload, given, springs)
+def frictions_of(structure: BoltedStructure, known: Known) -> Array:
+    """Friction of each joint (3, j), 5 %, median and 95 %: as what scatters lists it, as given, or as assumed."""
+    out = []
+    for joint in structure.joints:
+        listed = of_number(known, joint.name, "friction")
+        given = FRICTION if joint.friction is None else (joint.friction,) * 3
+        out.append(given if listed is None else listed.quantile(LEVELS))
+    return np.array(out).reshape(-1, 3).T
 
 
 def rest_damping(structure: BoltedStructure, found: Vibration, parts_loss: float = 0.0) -> Array:
@@ -141,7 +147,8 @@ def level_notes(case: Case, found: Sequence[Levels | None]) -> list[Note]:
         return [Note(code="no-level-damping", severity="limit", text=_why_none(case))]
     notes = _unanswered(case, [one for one in found if one is not None])
     rest = assumes_rest(case.structure, case.study.parts_loss)
-    words = assumed_words(friction=assumes_friction(case.structure), rest=rest)
+    friction = assumes_friction(case.structure, stated(case.study.uncertain))
+    words = assumed_words(friction=friction, rest=rest)
     if not words:
         return notes
     assumed = " and ".join(words) + ", as bolted structures have it" * rest

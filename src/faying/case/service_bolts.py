@@ -60,11 +60,9 @@ def service_bolts(structure: BoltedStructure, study: Study | None = None) -> tup
             compliance = fitted.guided_compliance
         _, head = frictions_of(choice, bolt)
         friction = NAN if head is None else head
-        curve, force = choice.curve, None
-        if curve is None and size is not None:
-            curve = FatigueCurve.iec(size) if choice.fatigue == "iec" else FatigueCurve.vdi(size)
-            if choice.by_yield and bolt.fastener is not None:
-                force = bolt.fastener.yield_stress * fatigue_area(fitted)
+        curve, force = choice.fatigue_curve(size), None
+        if curve is not None and choice.by_yield and bolt.fastener is not None:
+            force = bolt.fastener.yield_stress * fatigue_area(fitted)
         made = ServiceBolt(head_friction=friction, fatigue=curve, yield_force=force, guided_compliance=compliance)
         out.append(made)
     return tuple(out)

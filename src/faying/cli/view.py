@@ -47,6 +47,7 @@ def _for_paraview(file: Path, vtu: Path, *, page_too: bool) -> None:
     from faying.saved import load
 
     found: Any = load(file) if kind_of(file) is RESULT else None
+    found = getattr(found, "surface", found)  # of load cases and vibrations
     if not hasattr(found, "save_vtu"):
         raise InputError(
             f"--vtu writes a result, load cases or a vibration (.nc) for ParaView; {file.name} is none. Run the study "

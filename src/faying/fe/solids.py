@@ -72,12 +72,13 @@ class SolidMesh(Summary):
         """The parts that are one body, in their order: those that are bonded together, and each other one alone."""
         return bodies_of(tuple(self.parts), self.bonded)
 
-    def is_shared(self, face: str) -> bool:
-        """Whether every node of a named face is a node of another part too; False where there is no such face."""
+    def is_shared(self, face: str, *, wholly: bool = True) -> bool:
+        """Whether all sides of a named face, or some, have the nodes of another part; False where it is not there."""
         if not self.bonded or face not in self.faces:
             return False
         others = [self.part_nodes(part) for part in self.parts if part != self.face_part[face]]
-        return bool(np.isin(self.face_nodes(face), np.concatenate(others)).all())
+        shared = [np.isin(sides, np.concatenate(others)).all(axis=1) for sides in self.face(face)]
+        return bool((np.all if wholly else np.any)(np.concatenate(shared)))
 
     def body_nodes(self, body: Sequence[str]) -> Index:
         """Nodes of the parts of a body, each once."""

@@ -105,7 +105,7 @@ class BoltedStructure(Summary):
         for joint in self.joints:
             if fault := nothing_moves(joint.name, [face for face in joint.faces if self.mesh.is_shared(face)]):
                 raise InputError(fault)
-        faces += [face for bolt in solid for face in bolt.faces if self.mesh.is_shared(face)]
+        faces += [face for bolt in solid for face in bolt.faces if self.mesh.is_shared(face, wholly=False)]
         faces += [face for tie in self.mesh.ties for face in tie]
         for bolt in solid:
             if fault := seat_apart(bolt, faces):

@@ -1,7 +1,6 @@
 """What a preloaded structure does under its load cases: a record of arrays, on disk and back."""
 
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,6 @@ from faying.notes import Note
 from faying.result.fields import Recorded, group, in_units, listed, optional, variable
 from faying.result.groups import OuterStress
 from faying.result.provenance import Provenance
-from faying.result.vtk import write_states
 from faying.style import headline, percent
 from faying.typing import Array, Index
 from faying.units import show
@@ -195,26 +193,9 @@ class LoadCases(Recorded):
             "axis": ("x", "y", "z"),
             **({"part": self.parts} if self.parts else {}),
             **({"dowel": self.dowels} if self.dowels else {}),
-            **({"state": self.cases} if self.surface else {}),
+            **({"state": self.surface.states} if self.surface else {}),
             **modes,
         }
-
-    @checked_call
-    def save_vtu(self, path: str | Path) -> list[Path]:
-        """Write files for ParaView: NAME.pvd, and one .vtu for each case with displacement and stress.
-
-        Args:
-            path: NAME.pvd or NAME.vtu; a folder that is not there is made.
-
-        Returns:
-            The paths of all files, the .pvd first; ParaView's time is the number of the case, from 1.
-
-        Raises:
-            InputError: The name ends in something else, or a file cannot be written.
-        """
-        surface = self.surface
-        states = {} if surface is None else {name: surface.fields(k) for k, name in enumerate(self.cases)}
-        return write_states(surface, states, path)
 
     def index(self, case: str) -> int:
         """Return the number of a case, from 0. Raises InputError that lists the cases."""

@@ -240,7 +240,9 @@ def answers(base: Preloaded, loads: tuple[Load, ...], progress: Progress) -> Loa
         pressure=np.array([np.concatenate(one) for one in pressures]),
         shear=np.array(shears),
         **_dowels(structure, motions),
-        **_stress(structure, structure.strained(base.preload), motions, [acts[load.name].strains for load in loads]),
+        **_stress(
+            structure, structure.strained(base.preload), motions, {load.name: acts[load.name].strains for load in loads}
+        ),
         notes=(*base.notes, *load_notes(structure, contacts, [load.name for load in loads], pressures, arrays)),
         provenance=base.provenance,
         cycles=np.array([load.cycles for load in loads]),
@@ -307,19 +309,20 @@ def _dowels(structure: BoltedStructure, motions: Sequence[Array]) -> dict[str, A
 
 
 def _stress(
-    structure: BoltedStructure, rest: Array, motions: Sequence[Array], strains: Sequence[Mapping[str, float]]
+    structure: BoltedStructure, rest: Array, motions: Sequence[Array], strains: Mapping[str, Mapping[str, float]]
 ) -> dict[str, Any]:
     """The stress of each part under the preload and the motion [m] of each case, with its heat: where it is greatest,
     and on the outer surface.
     """
     mesh, outer = structure.mesh, structure.surface()
     greatest, fields = [], []
-    for one, free in zip(motions, strains, strict=True):
+    for one, free in zip(motions, strains.values(), strict=True):
         found = part_stresses(mesh, structure.materials, (rest + one)[:, None], free)
         greatest.append(greatest_stresses(found, mesh.points))
         fields.append(at_outline(found, len(mesh.points), outer.nodes))
     size, place, spread = (np.stack([one[k][..., 0] for one in greatest]) for k in range(3))
     surface = OuterStress(
+        states=tuple(strains),
         outline=mesh.points[outer.nodes],
         triangles=outer.triangles,
         part_of_triangle=outer.part_of_triangle,

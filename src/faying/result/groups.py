@@ -1,8 +1,13 @@
 """Groups of fields of a result that belong together: a result has all of a group, or None."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
+import numpy as np
+
+from faying.misuse import checked_call
 from faying.result.fields import Arrays, optional, variable
+from faying.result.vtk import grid_text, write_collection
 from faying.typing import Array, Index
 
 STRESSES = {
@@ -35,8 +40,9 @@ class Levels(Arrays):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class OuterStress(Arrays):
-    """The outer surface with the stress in some states; of random vibration the rms, of which there is no sign."""
+    """The outer surface with the stress in some states: load cases, or 1 and 3 sigma of a vibration; see `save_vtu`."""
 
+    states: tuple[str, ...]
     outline: Array = variable("node axis", "m", "nodes of the outer surface", "surface/position")
     triangles: Index = variable("triangle corner", "1", "triangles between them", "surface/", dtype="i8")
     part_of_triangle: Index = variable("triangle", "1", "part of each triangle, from 0", "surface/", dtype="i8")
@@ -48,7 +54,31 @@ class OuterStress(Arrays):
     def fields(self, state: int) -> dict[str, Array]:
         """What is known of one state at the nodes, by name and unit."""
         names = {"motion": "displacement [m]", **STRESSES}
-        return {text: every[state] for name, text in names.items() if (every := getattr(self, name)) is not None}
+        return {
+            text: np.asarray(every[state], float)
+            for name, text in names.items()
+            if (every := getattr(self, name)) is not None
+        }
+
+    @checked_call
+    def save_vtu(self, path: str | Path) -> list[Path]:
+        """Write files for ParaView: NAME.pvd, and one .vtu for each state with its displacement and stress.
+
+        Args:
+            path: NAME.pvd or NAME.vtu; a folder that is not there is made.
+
+        Returns:
+            The paths of all files, the .pvd first; ParaView's time is the number of the state, from 1.
+
+        Raises:
+            InputError: The name ends in something else, or a file cannot be written.
+        """
+
+        def grid(k: int) -> str:
+            cells = {"part": self.part_of_triangle}
+            return grid_text(self.states[k], self.outline, self.triangles, self.fields(k), cells, {})
+
+        return write_collection(path, range(1, len(self.states) + 1), grid)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

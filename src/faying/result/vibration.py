@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -12,7 +11,6 @@ from faying.notes import Note
 from faying.result.fields import Recorded, group, in_units, listed, variable
 from faying.result.groups import OuterStress
 from faying.result.provenance import Provenance
-from faying.result.vtk import write_states
 from faying.style import COLUMN, axes_of, colour, drawing, legend_above, new_figure, plain_numbers
 from faying.text import notes_row
 from faying.typing import Array, Index
@@ -60,7 +58,9 @@ class VibrationResponse(Recorded):
     share: Array = variable("mode", "1", "share of the mass that moves with a mode, or modal force", "modes/")
     frequency: Array = variable("estimate mode", "Hz", "frequency that is reached", "modes/")
     damping: Array = variable("estimate mode", "1", "damping ratio that is reached", "modes/")
-    level: Array = variable("estimate mode", "m/s2", "acceleration where a mode alone moves most", "modes/")
+    level: Array = variable(
+        "estimate mode", "m/s2", "displacement where a mode alone moves most, times its own omega squared", "modes/"
+    )
     reach: Array = variable(
         "mode", "m/s2", "where the curve of a mode ends; NaN where it need not", "modes/", gaps=True
     )
@@ -132,30 +132,8 @@ class VibrationResponse(Recorded):
             "joint": self.joints,
             "part": self.parts,
             "axis": ("x", "y", "z"),
-            **({"state": (self.words,)} if self.surface else {}),
+            **({"state": self.surface.states} if self.surface else {}),
         }
-
-    @checked_call
-    def save_vtu(self, path: str | Path) -> list[Path]:
-        """Write files for ParaView: NAME.pvd and NAME-1.vtu, the outer surface with its stress of von Mises.
-
-        Args:
-            path: NAME.pvd or NAME.vtu; a folder that is not there is made.
-
-        Returns:
-            The paths of both files, the .pvd first.
-
-        Raises:
-            InputError: The name ends in something else, or a file cannot be written.
-        """
-        return write_states(self.surface, {f"{self.title}: {self.name}": self.stress_fields()}, path)
-
-    def stress_fields(self) -> dict[str, Array]:
-        """Stress of von Mises on the outer surface [Pa] (node,), of random vibration at 1 and at 3 sigma."""
-        if self.surface is None:
-            return {}
-        stress, text = self.surface.von_mises[0], "von Mises stress [Pa]"
-        return {text: stress} if self.kind == "sine" else {f"{text}, 1 sigma": stress, f"{text}, 3 sigma": 3 * stress}
 
     def summary(self) -> tuple[str, dict[str, str]]:
         """Return a heading, and level, frequency and damping of the modes that are shaken most."""

@@ -14,27 +14,11 @@ import numpy as np
 
 from faying.errors import InputError
 from faying.files import make_folder, write_text
-from faying.result.groups import OuterStress
 from faying.typing import Array, Index
 
 Values = Mapping[str, Any]  # arrays by name
 TRIANGLE = 5  # VTK's number of a triangle with three nodes
 TYPES = {"f": ("Float64", np.float64), "i": ("Int64", np.int64), "u": ("UInt8", np.uint8)}
-
-
-def write_states(
-    surface: OuterStress | None, states: Mapping[str, Mapping[str, Array]], path: str | Path
-) -> list[Path]:
-    """Write NAME.pvd and one .vtu for each state of an outer surface; states: values at its nodes, by title."""
-    if surface is None:
-        raise InputError("there is no stress of the outer surface to write; solve it anew")
-    cells, titles, fields = {"part": surface.part_of_triangle}, list(states), list(states.values())
-
-    def grid(k: int) -> str:
-        points = {name: np.asarray(values, float) for name, values in fields[k].items()}
-        return grid_text(titles[k], surface.outline, surface.triangles, points, cells, {})
-
-    return write_collection(path, range(1, len(titles) + 1), grid)
 
 
 def write_collection(path: str | Path, times: Sequence[float], grid: Callable[[int], str]) -> list[Path]:

@@ -49,7 +49,8 @@ def _of_preload(result: RunRecord, maps: list[Any], load: int) -> str:
             points[text] = moved(stress[load])
     for one in result.vibrations:
         if one.surface is not None and one.preload == result.loads[load]:
-            points |= {f"{one.name}: {text}": moved(values) for text, values in one.stress_fields().items()}
+            for k, state in enumerate(one.surface.states):
+                points |= {f"{one.name}, {state}: {text}": moved(v) for text, v in one.surface.fields(k).items()}
     for name in UNITS:
         if any(name in one.fields for _, one in found):
             values = [one.fields.get(name, np.full((1, len(one.parents)), np.nan)) for _, one in found]

@@ -5,16 +5,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faying.case.level_damping import FRICTION, SPRINGS_AT_ENDS, assumes_friction, laws_at, moved_by_loss, rest_damping
+from faying.case.level_damping import SPRINGS_AT_ENDS, moved_by_loss, rest_damping
 from faying.errors import InputError
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
 from faying.joint.modal import Vibration
-from faying.microslip.levels import SPRINGS, LevelCycle, LevelModel, level_basis, level_model
+from faying.microslip.levels import SPRINGS, LevelCycle, LevelModel, cut_laws, level_basis, level_model
 from faying.microslip.microslip import Microslip
 from faying.service.mode_curve import LEAST_SLIP, ModeCurve
 from faying.typing import Array
 
+MEDIAN = 1  # of friction, among 5 %, median and 95 %
 LOWEST = 0.02  # of the amplitude that a mode would have with the least damping at rest: where its curve begins
 STEP = 2.0  # from level to level: between them a curve of two plateaus is smooth to 1 %
 STEP_AT_ENDS = 4.0  # the same at the ends of friction, where 3 % do
@@ -34,7 +35,7 @@ class CurveSets:
 
     Args:
         best: Of each mode (m).
-        least, most: At the least and the greatest friction; None where each joint has its own.
+        least, most: At the least and the greatest friction; None where it is known of each joint.
         rest: Damping ratio at rest [-], 5 %, median and 95 % (3, m).
         ended: Modes, from 1, whose joints would slide without end below the amplitude that is looked for.
     """
@@ -61,6 +62,7 @@ def curve_sets(
     found: Vibration,
     needs: Sequence[Callable[[ModeCurve], float]],
     greatest: Array,
+    frictions: Array,
     parts_loss: float = 0.0,
 ) -> CurveSets:
     """March the modes of a structure.
@@ -71,13 +73,14 @@ def curve_sets(
         found: Its modes at rest.
         needs: Of each elastic mode (m), the amplitude of its coordinate up to which its curve is wanted.
         greatest: Displacement of the node that moves most in each mode [kg^-1/2] (m,).
+        frictions: Coefficient of each joint (3, j), 5 %, median and 95 %.
         parts_loss: Loss factor of the parts themselves [-].
     """
     rest = rest_damping(structure, found, parts_loss)
     speeds = 2 * np.pi * found.damped.frequencies
     plain = tuple(ModeCurve(speed=float(w), rest=float(z)) for w, z in zip(speeds, rest[1], strict=True))
     slips = bool(structure.joints) and not any(joint.per_node for joint in structure.joints)
-    laws = _laws(structure, preload) if slips else {}
+    laws = _laws(structure, preload, frictions) if slips else {}
     if not laws:
         return CurveSets(best=plain, least=None, most=None, rest=rest)
     lossless, damped = _with_rest(plain, rest[0]), _with_rest(plain, rest[2])
@@ -87,31 +90,31 @@ def curve_sets(
     scale = greatest * speeds**2
     wanted = expected * scale > NOTHING * (expected * scale).max(initial=0.0)
     basis = level_basis(structure, preload, found, list(laws.values())[:2], np.where(wanted, likely * scale, 0.0))
-    laws[FRICTION[1]] = laws_at(structure, preload, FRICTION[1], SPRINGS)
+    laws[MEDIAN] = cut_laws(structure, preload, frictions[MEDIAN], SPRINGS)
     moved = moved_by_loss(structure, found)
     sets, ended = {}, set()
-    for mu, own in laws.items():
+    for end, own in laws.items():
         model = level_model(structure, preload, basis, own)
         marched = [
-            _march(model, k, curve, need, scale[k], moved[k], STEP if mu == FRICTION[1] else STEP_AT_ENDS)
+            _march(model, k, curve, need, scale[k], moved[k], STEP if end == MEDIAN else STEP_AT_ENDS)
             if wanted[k]
             else (curve, False)
             for k, (curve, need) in enumerate(zip(lossless, needs, strict=True))
         ]
-        sets[mu] = _with_rest([curve for curve, _ in marched], rest[1])
-        ended |= {k + 1 for k, (_, stopped) in enumerate(marched) if stopped and mu == FRICTION[1]}
-    least, most = sets.get(FRICTION[0]), sets.get(FRICTION[2])
-    return CurveSets(best=sets[FRICTION[1]], least=least, most=most, rest=rest, ended=tuple(sorted(ended)))
+        sets[end] = _with_rest([curve for curve, _ in marched], rest[1])
+        ended |= {k + 1 for k, (_, stopped) in enumerate(marched) if stopped and end == MEDIAN}
+    least, most = sets.get(0), sets.get(2)
+    return CurveSets(best=sets[MEDIAN], least=least, most=most, rest=rest, ended=tuple(sorted(ended)))
 
 
-def _laws(structure: BoltedStructure, preload: PreloadState) -> dict[float, list[Microslip]]:
-    """The laws cut coarsely, by the friction of joints that give none; at the median alone where each gives its own.
+def _laws(structure: BoltedStructure, preload: PreloadState, frictions: Array) -> dict[int, list[Microslip]]:
+    """The laws cut coarsely, by the end of the friction; at the median alone where it is known of each joint.
 
     None at all where a law has no stiffness that slips.
     """
-    frictions = FRICTION if assumes_friction(structure) else FRICTION[1:2]
+    ends = range(3) if np.any(np.ptp(frictions, axis=0)) else (MEDIAN,)
     try:
-        return {mu: laws_at(structure, preload, mu, SPRINGS_AT_ENDS) for mu in frictions}
+        return {end: cut_laws(structure, preload, frictions[end], SPRINGS_AT_ENDS) for end in ends}
     except InputError:
         return {}
 

@@ -24,7 +24,7 @@ from faying.joint.springs import Springs
 from faying.numerics.follow import same_group
 from faying.numerics.shifted import Shifted
 from faying.numerics.solve import conjugate_gradients
-from faying.study.vibration import Excitation, not_held
+from faying.study.vibration import Excitation, held_still, not_along, not_held
 from faying.typing import Array, Complex
 
 ACCURACY = 1e-8  # of the static answer, in energy
@@ -143,14 +143,13 @@ def _input_force(structure: BoltedStructure, excitation: Excitation) -> Array:
         if structure.rigid.size:
             rigid = np.linalg.qr(structure.rigid)[0]
             if np.linalg.norm(rigid.T @ force) > RESISTED * np.linalg.norm(force):
-                raise InputError(
-                    f"{what}: no support holds the structure along direction = {list(excitation.direction)}; give "
-                    "another direction, or a [[support]] that holds it"
-                )
+                raise InputError(not_along(excitation))
     else:
         force = nodal_force(structure, excitation.force, what)
     force = np.array(force)
     force[structure.fixed] = 0.0
+    if not np.any(force):
+        raise InputError(held_still(excitation))
     return force
 
 

@@ -12,9 +12,10 @@ from faying.units import GRAVITY, in_mm, load_text
 Rows = list[list[str]]
 HELP = (
     "Values are rms of random vibration (heads and margins at 3 sigma, three times the rms), amplitudes of a sweep. "
-    "Level: acceleration where a mode moves most, of it alone. Head: transverse motion over that at which the head "
-    "slides; above 1 a bolt turns loose, between 0.5 and 1 it may. Margin: friction over shear and torque of a joint, "
-    "and round its worst bolt; at 1 it slips."
+    "Level: displacement where a mode moves most, of it alone, times its own circular frequency squared; at resonance "
+    "that is its acceleration. Head: transverse motion over that at which the head slides; above 1 a bolt turns loose, "
+    "between 0.5 and 1 it may. Margin: friction over shear and torque of a joint, and round its worst bolt; at 1 it "
+    "slips."
 )
 
 

@@ -1,7 +1,7 @@
 """From a preloaded structure and what shakes it to the levels of its modes, and what points, bolts and joints bear."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -9,7 +9,8 @@ import numpy as np
 
 from faying.bolt.bolt import fatigue_area
 from faying.bolt.fatigue import FatigueCurve, bending_modulus, dirlik, sweep_cycles
-from faying.case.level_damping import FRICTION, assumed_words, assumes_rest
+from faying.case.level_damping import assumed_words, assumes_friction, assumes_rest, frictions_of
+from faying.case.scatter import Known
 from faying.case.service_bolts import ServiceBolt, head_frictions
 from faying.joint.bolted import BoltedStructure
 from faying.joint.equilibrium import PreloadState
@@ -45,6 +46,7 @@ class Shaken:
         bolts: What friction and fatigue need of each bolt.
         provenance: What it was made from.
         parts_loss: Loss factor of the parts themselves [-].
+        known: What scatters, by its key; of joints that it lists the friction.
     """
 
     title: str
@@ -55,6 +57,7 @@ class Shaken:
     bolts: Sequence[ServiceBolt]
     provenance: Provenance
     parts_loss: float = 0.0
+    known: Known = field(default_factory=dict)
 
     @property
     def forces(self) -> Array:
@@ -89,14 +92,15 @@ def vibrate(base: Shaken, excitation: Excitation) -> VibrationResponse:
     excited = Excited.of(base.structure, base.springs, base.found, excitation)
     elastic = slice(excited.rigid, None)
     needs = [partial(_needed, excitation, float(abs(force))) for force in excited.force[elastic]]
-    sets = curve_sets(base.structure, base.preload, base.found, needs, excited.greatest[elastic], base.parts_loss)
+    mu = frictions_of(base.structure, base.known)
+    sets = curve_sets(base.structure, base.preload, base.found, needs, excited.greatest[elastic], mu, base.parts_loss)
     lines = _lines(excitation, sets.best)
     given = _Answering(base=base, excited=excited, stress=_stress(base.structure), lines=lines)
     answer = partial(_random if excitation.kind == "random" else _sine, given)
-    best = answer(sets.best, FRICTION[1])
-    ends = [(answer(sets.at_rest(0), FRICTION[1]), answer(sets.at_rest(2), FRICTION[1]))]
+    best = answer(sets.best, mu[1])
+    ends = [(answer(sets.at_rest(0), mu[1]), answer(sets.at_rest(2), mu[1]))]
     if sets.least is not None and sets.most is not None:
-        ends.append((answer(sets.least, FRICTION[0]), answer(sets.most, FRICTION[2])))
+        ends.append((answer(sets.least, mu[0]), answer(sets.most, mu[2])))
     place, stress = best.pop("part_place"), best.pop("outer")
     return _record(given, sets, _with_ends(best, ends), place, stress)
 
@@ -145,7 +149,7 @@ def _stress(structure: BoltedStructure) -> Array:
     return out
 
 
-def _random(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> dict[str, Array]:
+def _random(given: _Answering, curves: Sequence[ModeCurve], friction: Array) -> dict[str, Array]:
     """What random vibration makes of the structure: rms values, and damage a second."""
     excited, table = given.excited, given.excited.excitation.table
     forces = np.abs(excited.force[excited.rigid :])
@@ -204,7 +208,7 @@ def _coordinates(excited: Excited, speeds: Array, dampings: Array, frequencies: 
     return np.asarray(excited.force[:, None] * moved)
 
 
-def _sine(given: _Answering, curves: Sequence[ModeCurve], friction: float) -> dict[str, Array]:
+def _sine(given: _Answering, curves: Sequence[ModeCurve], friction: Array) -> dict[str, Array]:
     """What a sweep makes of the structure: greatest amplitudes, and damage of one sweep."""
     excited = given.excited
     excitation = excited.excitation
@@ -286,14 +290,15 @@ def _borne(
     coordinates: Complex,
     amplitude: Array | float,
     frequencies: Array,
-    friction: float,
+    friction: Array,
     products: Callable[[Complex], Array],
 ) -> dict[str, Array]:
     """Motion of the points, forces of the bolts, and the margins of heads and joints.
 
-    products: of amplitudes (..., k, n) the (..., k, k) whose diagonal is the square of what is printed.
+    friction: coefficient of each joint (j,); products: of amplitudes (..., k, n) the (..., k, k) whose diagonal is the
+    square of what is printed.
     """
-    excited, structure, base = given.excited, given.base.structure, given.base
+    excited, base = given.excited, given.base
     peak = PEAKS[excited.excitation.kind]
 
     def each(values: Complex) -> Array:
@@ -304,8 +309,7 @@ def _borne(
     across = _norms(products, excited.transfer("across", coordinates, amplitude))
     carried = excited.transfer("carried", coordinates, amplitude)
     normal, slip = each(carried[:, 0]), _norms(products, carried[:, 1:])
-    given_friction = [structure.joints[p.joint].friction for p in excited.patches]
-    mu = np.array([friction if one is None else one for one in given_friction])
+    mu = friction[[p.joint for p in excited.patches]]
     pressed = np.array([p.pressed.normal for p in excited.patches])
     left = np.maximum(base.forces - peak * axial, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -379,10 +383,11 @@ def _record(
         parts=tuple(structure.mesh.parts),
         part_stress_place=place,
         surface=OuterStress(
+            states=("1 sigma", "3 sigma") if excitation.kind == "random" else ("amplitude",),
             outline=structure.mesh.points[outer.nodes],
             triangles=outer.triangles,
             part_of_triangle=outer.part_of_triangle,
-            von_mises=stress[None, outer.nodes],
+            von_mises=np.outer((1, 3) if excitation.kind == "random" else (1,), stress[outer.nodes]),
         ),
         direction=np.array(excitation.direction),
         input_frequency=excitation.table.frequencies,
@@ -443,7 +448,8 @@ def _notes(given: _Answering, sets: CurveSets, found: Mapping[str, Array], reach
         text = f"{what}: at some frequencies a mode has several amplitudes, and a sweep jumps; the greatest counts"
         yield Note(code="vibration-jumps", text=text)
     rest = assumes_rest(given.base.structure, given.base.parts_loss)
-    if words := assumed_words(friction=sets.least is not None, rest=rest):
+    assumed = sets.least is not None and assumes_friction(given.base.structure, given.base.known)
+    if words := assumed_words(friction=assumed, rest=rest):
         yield Note(code="level-damping", severity="limit", text=f"damping in service assumes {' and '.join(words)}")
     if given.base.structure.joints:
         text = (

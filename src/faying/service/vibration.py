@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from faying.case.case import Case
 from faying.case.provenance import provenance
+from faying.case.scatter import stated
 from faying.case.service_bolts import service_bolts
 from faying.case.solve import LoadedCase
 from faying.errors import InputError
@@ -29,6 +30,7 @@ def vibrations_of(case: Case, state: LoadedCase) -> tuple[VibrationResponse, ...
         bolts=service_bolts(structure, study),
         provenance=provenance(study),
         parts_loss=study.parts_loss,
+        known=stated(study.uncertain),
     )
     return tuple(vibrate(base, one) for one in study.vibrations)
 

@@ -164,6 +164,7 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
         one.symbol: one
         for one in (
             *_thread(bolt),
+            _endurance(choice, _metric(bolt)),
             *_tightening(case.study, bolt, choice, force),
             *_loads(case, index, choice, 0.0 if found is None else (found.greatest or found.mean).thermal_gain),
             *_compliances(numbers, index, choice),
@@ -176,9 +177,17 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
     fastener, metric = bolt.fastener, _metric(bolt)
     size = "thread not known" if metric is None else f"{metric} {fastener.grade if fastener else '(no grade)'}"
     tapped = isinstance(fitted, FittedBolt) and fitted.thread is not None
-    rolled_after = choice.rolled == "after"
-    rows = evaluate(steps(tapped=tapped, rolled_after=rolled_after, cycles=damage is not None), known)
+    curve = "as given" if choice.curve is not None else "IEC 61400-6" if choice.fatigue == "iec" else ""
+    taken = steps(tapped=tapped, rolled_after=choice.by_yield, cycles=damage is not None, curve=curve)
+    rows = evaluate(taken, known)
     return BoltSheet(bolt=bolt.name, preload=force, size=size, rows=rows)
+
+
+def _endurance(choice: BoltSheetChoice, thread: Thread | None) -> Quantity:
+    """Stress amplitude at the knee of the curve of fatigue."""
+    curve = choice.fatigue_curve(None if thread is None else thread.diameter)
+    value = None if curve is None else curve.endurance
+    return _quantity("sigma_K", "stress amplitude at the knee of the curve", "Pa", value, "bolt.thread")
 
 
 def _cycles(damage: float | None) -> list[Quantity]:

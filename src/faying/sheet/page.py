@@ -22,7 +22,7 @@ STYLE = (
 SCOPE = (
     "Concentric clamping and loading. Load cases are solved at the least preload in service (R5, R9, R12), at the mean "
     "one (load factor of R3) and at the greatest at assembly (R8, R10). Typed loads are shared by the load factor, "
-    "which holds while the joint neither opens nor slips. Bending of the bolt is not in the sheet."
+    "which holds while the joint neither opens nor slips. Bending of the bolt is in R9 alone."
 )
 
 

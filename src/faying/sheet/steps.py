@@ -159,7 +159,8 @@ STEPS = (
     ),
     _step(
         "R9 sigma_a [Pa]: alternating stress",
-        "half of the range of the additional bolt force, over the stress area + amplitude of the bending stress",
+        "half of the range of the additional bolt force, over the stress area + amplitude of the bending stress; heat "
+        "counts in R4, R8 and D",
         lambda F_SAu, F_SAo, A_S, sigma_b: (F_SAo - F_SAu) / (2 * A_S) + sigma_b,
         limit="sigma_ASV",
     ),
@@ -231,13 +232,14 @@ STEPS = (
 )
 
 
-def steps(*, tapped: bool, rolled_after: bool, cycles: bool = False) -> tuple[Step, ...]:
+def steps(*, tapped: bool, rolled_after: bool, cycles: bool = False, curve: str = "") -> tuple[Step, ...]:
     """Return the steps, in the order of the guideline.
 
     Args:
         tapped: The bolt is screwed into a tapped hole; else it has a nut.
         rolled_after: Its thread is rolled after heat treatment, so that another endurance limit holds.
         cycles: A load case says how often it comes and goes.
+        curve: Where the curve of fatigue is from, in place of VDI 2230; "" for that.
 
     Source:
         VDI 2230 Part 1:2015, section 4, for concentric clamping and loading.
@@ -245,6 +247,11 @@ def steps(*, tapped: bool, rolled_after: bool, cycles: bool = False) -> tuple[St
     others = ("F_nut" if tapped else "m_req", *(() if rolled_after else ("F_Sm", "sigma_ASG")))
     others += () if cycles else ("D",)
     found = tuple(one for one in STEPS if one.symbol not in others)
+    if curve:
+        own = _step(
+            f"R9 sigma_ASV [Pa]: endurance limit, {curve}", "stress amplitude at the knee", lambda sigma_K: sigma_K
+        )
+        found = tuple(replace(own, source=curve) if one.symbol == own.symbol else one for one in found)
     if not rolled_after:
         return found
     return tuple(replace(one, limit="sigma_ASG") if one.symbol == "sigma_a" else one for one in found)

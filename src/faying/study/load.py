@@ -100,6 +100,14 @@ class Displacement:
         object.__setattr__(self, "displacement", vector(displacement, "m", f"displacement of {face!r}"))
 
 
+def no_expansion(what: str, material: str) -> str:
+    """That something is heated whose material says no expansion."""
+    return (
+        f"{what} changes its temperature, and its material {material!r} has no expansion; give the material one, such "
+        'as "12e-6 1/K" for steel'
+    )
+
+
 def not_held(load: str, face: str, axis: str) -> str:
     """That a load moves a face along an axis in which no rigid support holds it."""
     return (

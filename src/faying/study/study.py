@@ -70,6 +70,7 @@ class Study(Summary):
         materials, parts: materials by name; name of the material of each part.
         geometry, surface, law, joints, bolts, dowels: tables of the file.
         supports, masses, modes, response, test, hammer: others.
+        parts_loss: loss factor of the parts themselves [-].
         bonds: joints whose faces are welded or glued; `joints` are the others.
         backbone: which curve over amplitude is asked for; None where the file does not say.
         alternatives: other laws and surfaces whose modes stand beside those of the study.
@@ -96,6 +97,7 @@ class Study(Summary):
     dowels: tuple[Dowel, ...] = ()
     modes: ModesChoice = field(default_factory=ModesChoice)
     response: ResponseChoice | None = None
+    parts_loss: float = 0.0
     test: TestChoice | None = None
     hammer: HammerChoice | None = None
     backbone: BackboneChoice | None = None
@@ -168,11 +170,6 @@ class Study(Summary):
     def assumes_scatter(self) -> bool:
         """Whether what [uncertain] does not list scatters as it is assumed of bolted structures."""
         return self.uncertain is None or not self.uncertain.only
-
-    @property
-    def parts_loss(self) -> float:
-        """Loss factor [-] of the parts themselves; 0 where nothing is said of it."""
-        return 0.0 if self.response is None else self.response.structural_loss
 
     @property
     def in_order(self) -> bool:
@@ -267,7 +264,7 @@ class Study(Summary):
         dowels = read_dowels(top.tables("dowel"), materials)
         modes = top.inner("modes", read_modes) or ModesChoice()
         order = top.inner("tightening", lambda table: read_order(table, names))
-        response = top.inner("response", ResponseChoice.of)
+        response, parts_loss = top.inner("response", ResponseChoice.of) or (None, 0.0)
         test, hammer = read_test(top, max(forces, key=len, default=(0.0,)))
         geometry = _with_selectors(geometry, faults)
         count = max(map(len, forces), default=1)
@@ -289,6 +286,7 @@ class Study(Summary):
             preloads=_preloads(forces, order, joints, bolts),
             modes=modes,
             response=response,
+            parts_loss=parts_loss,
             test=test,
             hammer=hammer,
             backbone=backbone,

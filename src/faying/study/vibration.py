@@ -146,6 +146,19 @@ def not_held(name: str) -> str:
     return f"vibration {name!r} moves the supports, and there are none; add a [[support]], or give face or point"
 
 
+def not_along(one: Excitation) -> str:
+    """That the supports should move along a direction in which they hold nothing."""
+    return (
+        f"vibration {one.name!r}: no support holds the structure along direction = {list(one.direction)}; give another "
+        "direction, or a [[support]] that holds it"
+    )
+
+
+def held_still(one: Excitation) -> str:
+    """That the force acts on what supports hold."""
+    return f"vibration {one.name!r}: its force acts where supports hold the structure, and shakes nothing; move it"
+
+
 def _table(given: Any, kind: Kind, unit: str, what: str) -> InputTable:
     """The table of rows, or of a file. Raises InputError that shows the form."""
     key = "psd" if kind == "random" else "sine"

@@ -64,6 +64,12 @@ class BoltSheetChoice:
         """Whether what the thread bears depends on the force at yield: rolled after heat treatment, VDI 2230."""
         return self.curve is None and self.fatigue == "vdi" and self.rolled == "after"
 
+    def fatigue_curve(self, diameter: float | None) -> FatigueCurve | None:
+        """The curve of its fatigue, before what its force changes; None where it hangs on a diameter [m] not known."""
+        if self.curve is not None or diameter is None:
+            return self.curve
+        return FatigueCurve.iec(diameter) if self.fatigue == "iec" else FatigueCurve.vdi(diameter)
+
     @classmethod
     def of(cls, table: Table, bolts: Sequence[str], cases: Sequence[str]) -> "BoltSheetChoice":
         """Read one [[bolt_sheet]]."""
