@@ -312,6 +312,28 @@ def test_the_alternating_stress_is_held_against_the_curve_of_the_sheet(made, tab
     assert row.verdict == ("ok" if row.result.value <= limit else "exceeded")
 
 
+@pytest.mark.slow
+def test_damage_of_the_sheet_has_that_of_vibration_in_its_time(made):
+    """What a run finds at the same preload, 95 %, of those vibrations that say how long; and no row without."""
+    noise = {
+        "name": "noise",
+        "psd": [["20 Hz", "0.001 N^2/Hz"], ["20 kHz", "0.001 N^2/Hz"]],
+        "point": ["40 mm", "15 mm", "15 mm"],
+    }
+    timed = noise | {"duration": "1 h"}
+    swept = {"name": "sweep", "sine": [["20 Hz", "0.05 N"], ["20 kHz", "0.05 N"]], "point": ["40 mm", "15 mm", "15 mm"]}
+    study = made(bolt_sheet=SAID, vibration=[timed, swept])
+    found = run(study).vibrations
+    for preload, response in zip(("2 kN", "6 kN"), found[::2], strict=True):
+        row = bolt_sheet(study, preload).sheets[0].row("D")
+        assert response.damage[2, 0] > 0
+        assert row.result.value == pytest.approx(response.damage[2, 0], rel=1e-6)
+        assert "'noise'" in row.inputs[1].name
+        assert "'sweep'" not in row.inputs[1].name
+    with pytest.raises(faying.InputError, match="no row 'D'"):
+        bolt_sheet(made(bolt_sheet=SAID, vibration=[noise])).sheets[0].row("D")
+
+
 def test_a_thread_rolled_after_heat_treatment_has_one_endurance_in_sheet_and_service(made):
     """The sheet's own step at the same mean force, and at yield that of a thread rolled before."""
     study = made(bolt_sheet=SAID | {"rolled": "after"})

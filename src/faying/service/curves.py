@@ -26,6 +26,7 @@ NO_SLIP = 0.05  # of the least damping at rest: a mode with less slip at the gre
 SLIGHT = 0.1  # of the damping at rest: a curve that begins with more slip goes down first, in steps of
 DOWN = 8.0
 MOST_DOWN = 6  # at most so many of them
+MOST_SHORT = 6  # levels in a row that are not reached in one step: a joint that slides as a whole goes on for ever
 NOTHING = 1e-3  # of the level of the mode that is shaken most: modes below it are taken as at rest
 
 
@@ -136,7 +137,7 @@ def _march(
     points: list[tuple[float, float, float]] = []
     longest = step
     last: LevelCycle | None = None
-    settles = True  # where passes do not, they seldom do again above
+    settles, short = True, 0  # where passes do not settle, they seldom do again above
     top = needs(curve) * scale
     cycle = model.passes(top, mode)
     if cycle.converged and cycle.damping < NO_SLIP * curve.rest:  # and less below
@@ -148,7 +149,7 @@ def _march(
             break
         level /= DOWN
         cycle = model.passes(level, mode)
-    while level > 0 and np.isfinite(cycle.frequency):
+    while level > 0 and np.isfinite(cycle.frequency) and short <= MOST_SHORT:
         point = _point(cycle, moved)
         if last is not None and _bends([*points, point], curve.rest) and step > FINEST_STEP:
             level, step = np.sqrt(last.level * cycle.level), np.sqrt(step)
@@ -166,6 +167,7 @@ def _march(
             found = model.balanced(last, level, mode) if last.converged else last
             farther = found.level > FINEST_STEP**0.25 * last.level
             cycle = found if farther else model.passes(min(level, FINEST_STEP * last.level), mode)
+        short = short + 1 if cycle.level < level else 0
     return curve, level > 0
 
 

@@ -1,6 +1,6 @@
 """The sheet of each bolt of a study: steps R0 to R13 of VDI 2230 with the numbers of this structure."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
@@ -25,6 +25,8 @@ from faying.joint.strength import seat_limit
 from faying.misuse import checked_call
 from faying.progress import Report
 from faying.result.bolts import BoltNumbers
+from faying.result.vibration import VibrationResponse
+from faying.service.vibration import vibrations_of
 from faying.sheet.bolt_loads import AtPreload, BoltLoad, bolt_loads
 from faying.sheet.rows import Quantity, Row, evaluate
 from faying.sheet.steps import SHEAR, steps
@@ -122,17 +124,22 @@ def bolt_sheet(
     plan = Study.read(study)
     number = preload_index(plan.loads, preload, names=plan.load_names)
     stages = 7 if any(choice_of(plan.bolt_sheets, bolt.name).loads for bolt in plan.bolts) else 4
-    progress = Progress(stages, report)
-    case = Case.of(bare(plan), progress)
+    progress = Progress(stages + bool(plan.vibrations), report)
+    case = Case.of(replace(bare(plan), vibrations=plan.vibrations), progress)
     engine = case.engine("reanalysis")
     state = solve(case, number, engine, progress, ranges=False)
+    if plan.vibrations:
+        progress.begin("vibration")
+    shaken = vibrations_of(case, state)
     numbers = bolt_numbers(case, [state], shapes_of(case, [state]))
     if numbers is None:
         raise InputError("the study has no bolt, so that there is no sheet; add [[bolt]]")
     forces = np.array(state.preload.bolt_forces)
     least, greatest = np.array([_ends(plan, k, numbers, float(force)) for k, force in enumerate(forces)]).T
     found = bolt_loads(case, state, engine, plan.preloads[number], (least, greatest), numbers.load_factor[0], progress)
-    sheets = [_sheet(case, index, numbers, float(forces[index]), found.get(index)) for index in range(len(forces))]
+    sheets = [
+        _sheet(case, index, numbers, float(force), found.get(index), shaken) for index, force in enumerate(forces)
+    ]
     return BoltSheets(title=plan.title, load=state.load, sheets=tuple(sheets))
 
 
@@ -146,7 +153,14 @@ def _ends(study: Study, index: int, numbers: BoltNumbers, force: float) -> tuple
     return force * (1 - scatter) - (lost if isfinite(lost) else 0.0), force * (1 + scatter)
 
 
-def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: BoltLoad | None) -> BoltSheet:
+def _sheet(
+    case: Case,
+    index: int,
+    numbers: BoltNumbers,
+    force: float,
+    found: BoltLoad | None,
+    shaken: Sequence[VibrationResponse],
+) -> BoltSheet:
     fitted = case.structure.fitted_bolts[index]
     bolt, choice = fitted.bolt, choice_of(case.study.bolt_sheets, fitted.bolt.name)
     if found is not None:
@@ -160,6 +174,7 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
         )
     states = () if found is None else (found.least, found.mean, found.greatest)
     damage = max((one.damage for one in states if one is not None and one.damage is not None), default=None)
+    fatigue = _cycles(damage, {one.name: float(one.damage[2, index]) for one in shaken})
     known = {
         one.symbol: one
         for one in (
@@ -169,7 +184,7 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
             *_loads(case, index, choice, 0.0 if found is None else (found.greatest or found.mean).thermal_gain),
             *_compliances(numbers, index, choice),
             *_departures(float(numbers.load_factor[0, index]), choice, found),
-            *_cycles(damage),
+            *fatigue,
             _bending(_metric(bolt), states),
             *_seats(case, index, numbers, force, choice),
         )
@@ -178,7 +193,7 @@ def _sheet(case: Case, index: int, numbers: BoltNumbers, force: float, found: Bo
     size = "thread not known" if metric is None else f"{metric} {fastener.grade if fastener else '(no grade)'}"
     tapped = isinstance(fitted, FittedBolt) and fitted.thread is not None
     curve = "as given" if choice.curve is not None else "IEC 61400-6" if choice.fatigue == "iec" else ""
-    taken = steps(tapped=tapped, rolled_after=choice.by_yield, cycles=damage is not None, curve=curve)
+    taken = steps(tapped=tapped, rolled_after=choice.by_yield, cycles=bool(fatigue), curve=curve)
     rows = evaluate(taken, known)
     return BoltSheet(bolt=bolt.name, preload=force, size=size, rows=rows)
 
@@ -190,12 +205,19 @@ def _endurance(choice: BoltSheetChoice, thread: Thread | None) -> Quantity:
     return _quantity("sigma_K", "stress amplitude at the knee of the curve", "Pa", value, "bolt.thread")
 
 
-def _cycles(damage: float | None) -> list[Quantity]:
-    """What load cases that come and go do to the bolt; nothing where none does."""
-    if damage is None:
+def _cycles(damage: float | None, shaken: Mapping[str, float]) -> list[Quantity]:
+    """What load cases that come and go, and vibrations that last, do to the bolt; nothing where there are none.
+
+    shaken: Damage by each vibration, 95 % of friction and of damping at rest; NaN where its time is not given.
+    """
+    lasting = {name: one for name, one in shaken.items() if isfinite(one)}
+    if damage is None and not lasting:
         return []
+    of_load, of_noise = (" (none)" * absent for absent in (damage is None, not lasting))
+    names = f"damage by vibration {', '.join(map(repr, lasting))} at the preload, 95 %"
     return [
-        _quantity("D_c", "damage by the cycles of load cases, bending included", "", damage, ""),
+        _quantity("D_c", f"damage by the cycles of load cases, bending included{of_load}", "", damage or 0.0, ""),
+        _quantity("D_v", names if lasting else f"damage by vibration{of_noise}", "", sum(lasting.values()), ""),
         _quantity("D_1", "damage at failure", "", 1.0, ""),
     ]
 

@@ -167,8 +167,8 @@ STEPS = (
     _step(
         "R9 D [-]: damage by cycles",
         "cycles over those to failure at the stress of force and bending, of all load cases (Palmgren, Miner), at that "
-        "of the three preloads where it is greatest",
-        lambda D_c: D_c,
+        "of the three preloads where it is greatest + that of vibration in its time",
+        lambda D_c, D_v: D_c + D_v,
         limit="D_1",
         source=f"{GUIDELINE}, section 5.5.3",
     ),
@@ -238,7 +238,7 @@ def steps(*, tapped: bool, rolled_after: bool, cycles: bool = False, curve: str 
     Args:
         tapped: The bolt is screwed into a tapped hole; else it has a nut.
         rolled_after: Its thread is rolled after heat treatment, so that another endurance limit holds.
-        cycles: A load case says how often it comes and goes.
+        cycles: A load case says how often it comes and goes, or a vibration how long it lasts.
         curve: Where the curve of fatigue is from, in place of VDI 2230; "" for that.
 
     Source:
