@@ -2,12 +2,13 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import faying
-from faying.answer.interval import _together
+from faying.answer.interval import _bolts_alike, _together
 from faying.case.case import Case
 from faying.case.law_range import law_range
 from faying.case.scatter import known_of
@@ -51,6 +52,32 @@ def test_a_mode_has_the_same_number_in_a_run_and_in_samples(plain, tmp_path):
     assert best[4] < best[3]
     sampled = np.median(faying.predict(study(tmp_path), samples=16).frequencies, axis=0)[0]
     assert np.array_equal(np.argsort(sampled), np.argsort(best))
+
+
+def test_the_interval_of_a_preload_does_not_depend_on_others_in_the_list(tmp_path):
+    """That of runs at its ends, alone, in rising and in falling lists; the law is elastic and remembers none."""
+    only = "only = true\npreload = { scatter = '40 %' }\nstructure = '0.01 %'\ndiscrepancy = '0.01 %'"
+    found = {}
+    for loads in ('["1 kN"]', '["1 kN", "3 kN", "8 kN"]', '["8 kN", "3 kN", "1 kN"]'):
+        result = faying.run(study(tmp_path, only, loads=loads))
+        at = int(np.argmin(np.abs(result.loads - 1e3)))
+        found[loads] = result.interval.ends[:, at]
+    alone = found.pop('["1 kN"]')
+    for ends in found.values():
+        assert ends == pytest.approx(alone, rel=5e-5)
+    factor = 0.2 * 1.6449  # the range is two standard deviations each way
+    direct = [
+        faying.run(study(tmp_path, loads=f'["{1 + sign * factor} kN"]', intervals=False)).frequencies[0]
+        for sign in (-1, 1)
+    ]
+    assert alone[:, :3] == pytest.approx(np.array(direct)[:, :3], rel=2e-4)
+
+
+def test_a_bolt_that_is_listed_by_name_scatters_alone():
+    case = SimpleNamespace(study=SimpleNamespace(bolts=[SimpleNamespace(name=name) for name in "abcd"]))
+    assert _bolts_alike(case, {"bolt.b.factor": None, "bolt.preload": None}) == [[1], [0, 2, 3]]
+    assert _bolts_alike(case, {f"bolt.{name}.factor": None for name in "abcd"}) == [[0], [1], [2], [3]]
+    assert _bolts_alike(case, {}) == [[0, 1, 2, 3]]
 
 
 @pytest.mark.parametrize("product", [0.0, 0.08, -0.15])

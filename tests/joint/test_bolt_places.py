@@ -12,6 +12,7 @@ from faying.fe.holes import holes
 from faying.fe.interface import join
 from faying.fe.line import Line
 from faying.fe.mesh import Mesh
+from faying.joint.bolted import overlapping
 from faying.joint.joint import FittedJoint
 from faying.joint.joint_law import JointLaw
 from faying.joint.strength import least_seat_area
@@ -170,6 +171,25 @@ def test_two_bolts_in_one_place_and_one_thing_twice_are_refused():
     again = replace(made.joints[0], name="k", faces=made.joints[0].faces[::-1])
     with pytest.raises(faying.InputError, match="joints 'j' and 'k' join the same faces .* would double the stiffness"):
         replace(made, joints=(*made.joints, again))
+
+
+def test_joints_of_some_of_the_same_sides_are_refused():
+    """Half of both faces again, under other names; halves of one face alone, or of both that do not overlap, may be."""
+    mesh = rings()
+    made = structure(mesh, bolt())
+    (j,) = made.joints
+
+    def half(face, first):
+        return tuple(sides[: len(sides) // 2] if first else sides[len(sides) // 2 :] for sides in mesh.face(face))
+
+    named = {f"{face}.{k}": half(face, k == 1) for face in j.faces for k in (1, 2)}
+    owner = {name: mesh.face_part[name.rpartition(".")[0]] for name in named}
+    both = replace(mesh, faces={**mesh.faces, **named}, face_part={**mesh.face_part, **owner})
+    one, two = j.faces
+    assert overlapping(both, {"a": (one, two), "b": (f"{one}.1", f"{two}.1")})
+    assert overlapping(both, {"a": (f"{two}.1", one), "b": (f"{one}.1", two)})
+    assert not overlapping(both, {"a": (f"{one}.1", f"{two}.1"), "b": (f"{one}.2", f"{two}.2")})
+    assert not overlapping(both, {"a": (one, f"{two}.1"), "b": (one, f"{two}.2")})
 
 
 @pytest.mark.parametrize(("share", "refused"), [(0.15, False), (0.25, True)])

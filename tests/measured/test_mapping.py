@@ -67,6 +67,12 @@ def test_nearest_nodes_and_what_found_none():
     assert found.missing == {2: pytest.approx(0.2)}
 
 
+def test_points_on_nodes_of_two_parts_are_named():
+    """Two cubes that touch at x = 1, each with nodes of its own there."""
+    found = map_points({1: (0.5, 0.5, 0.0), 7: (1.0, 0.3, 0.3)}, np.concatenate([GRID, GRID + np.array([1.0, 0, 0])]))
+    assert found.seams == (7,)
+
+
 def test_default_tolerance_is_two_per_cent_of_the_diagonal():
     assert map_points({1: (0, 0, 0)}, GRID).tolerance == pytest.approx(0.02 * np.sqrt(3))
 

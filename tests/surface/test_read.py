@@ -208,6 +208,19 @@ def test_an_increment_of_z_is_for_whole_numbers_alone(rough, tmp_path):
         assert len(back.notes) == notes
 
 
+def test_x3p_that_is_neither_a_map_nor_one_profile_is_refused_and_a_turn_is_told(rough, tmp_path):
+    good = write_scan(rough, tmp_path / "good.x3p")
+    xml = xml_of(good)
+    for kind in ("PRF", "PCL"):
+        other = repacked(good, tmp_path / f"{kind}.x3p", main_xml=xml.replace(">SUR<", f">{kind}<"))
+        with pytest.raises(ReadError, match=f"FeatureType {kind} of"):
+            read_scan(other)
+    for last, notes in (("1.0", 0), ("-1", 1)):
+        turn = "".join(f"<r>{v}</r>" for v in (*"100010", "0", "0", last))
+        turned = xml.replace("</Axes>", f"<Rotation>{turn}</Rotation></Axes>")
+        assert len(read_scan(repacked(good, tmp_path / "turned.x3p", main_xml=turned)).notes) == notes
+
+
 def test_x3p_with_a_mask_and_with_heights_in_the_xml(tmp_path):
     scan = spectral((8, 12), spacing=1e-6, D=2.4, Rq=1e-6)
     good = write_scan(scan, tmp_path / "good.x3p", precision="D")

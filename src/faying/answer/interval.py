@@ -39,6 +39,8 @@ from faying.units import show
 
 DRAWS = 4
 MIN_DRAWS = 2  # that have a scatter
+PRELOAD = "preload"
+FORCES = ("factor", "preload")  # of a bolt, by which [uncertain] lists how far its preload scatters
 BOTH = {"law", "k_t/k_n"}  # act on the same springs: what they do together is no sum
 GRID = 64  # equal shares of the probability of either: a quantile of both is right to a hundredth of the width
 
@@ -184,8 +186,8 @@ def intervals(
     known = known_of(case)
     if not case.structure.joints or not can_change(case):
         text = (
-            f"the intervals do not contain law, k_t/k_n, {'preload ' * (len(case.loads) == 1)}and waves, which are "
-            "found for bolts pulled at once, springs per area and hysteretic damping"
+            "the intervals do not contain law, k_t/k_n, preload and waves, which are found for bolts pulled at once, "
+            "springs per area and hysteretic damping"
         )
         lost = (
             [Note(code=INCOMPLETE, severity="wrong", text=text), *law_notes(case, known)]
@@ -196,7 +198,7 @@ def intervals(
     draws = Draws.of(case, known)
     plain = ChangedCase.nothing(case)
     waves = [replace(plain, gaps=draws.gaps(case, seed)) for seed in draws.drawn]
-    laws, (factors, _) = _laws(case, known), _preload_factors(case, known)
+    laws, factors = _laws(case, known), _preload_factors(case, known)[1]
     medians = [replace(one, laws=laws, factor=factors) for one in waves or [plain]]
     ends = _ends(case, known, medians[0])
     corners = _corners(case, known, medians[0]) if ends.keys() >= BOTH else []
@@ -238,10 +240,27 @@ def _ends(case: Case, known: Known, middle: ChangedCase) -> dict[str, tuple[Chan
         out["law"] = replace(middle, laws=_laws(case, known, 0)), replace(middle, laws=_laws(case, known, 2))
     if any(of_each(case, known, "tangential")):
         out["k_t/k_n"] = replace(middle, laws=_laws(case, known, 1, 0)), replace(middle, laws=_laws(case, known, 1, 2))
-    factors, (least, most) = _preload_factors(case, known)
-    if len(case.loads) == 1 and least < most:
-        out["preload"] = replace(middle, factor=least * factors), replace(middle, factor=most * factors)
+    low, factors, high = _preload_factors(case, known)
+    apart = [bolts for bolts in _bolts_alike(case, known) if np.any(low[bolts] < high[bolts])]
+    for bolts in apart:
+        who = "" if len(apart) == 1 else f" of {' and '.join(case.study.bolts[k].name for k in bolts)}"
+        both = factors.copy(), factors.copy()
+        both[0][bolts], both[1][bolts] = low[bolts], high[bolts]
+        first, second = (replace(middle, factor=one, trained=len(apart) == 1) for one in both)
+        out[f"{PRELOAD}{who}"] = first, second
     return out
+
+
+def _preload_factors(case: Case, known: Known) -> Array:
+    """Factors on the preload of each bolt (3, b): 5 %, median and 95 %."""
+    return np.stack([force_factors(known, case.study, k, LEVELS) for k in range(len(case.study.bolts))], axis=1)
+
+
+def _bolts_alike(case: Case, known: Known) -> list[list[int]]:
+    """Bolts whose preloads scatter by one factor: each that is listed by its name alone, the others together."""
+    own = {k for k, bolt in enumerate(case.study.bolts) for name in FORCES if f"bolt.{bolt.name}.{name}" in known}
+    rest = [k for k in range(len(case.study.bolts)) if k not in own]
+    return [[k] for k in sorted(own)] + [rest] * bool(rest)
 
 
 def _corners(case: Case, known: Known, middle: ChangedCase) -> list[ChangedCase]:
@@ -325,9 +344,15 @@ def _combined(
     if shifts:
         middle += np.mean(shifts, axis=0)
     if isinstance(about, np.ndarray):
+        bolts = []
         for name, (low, high) in joints.pairs.items():
             if isinstance(low, np.ndarray) and isinstance(high, np.ndarray):
                 found[name] = np.log(np.stack([low, high]) / about)
+                if name.startswith(PRELOAD):
+                    bolts.append(found.pop(name))
+        if bolts:  # independent of each other: the squares of each side add
+            ends = np.array([[np.minimum(one.min(axis=0), 0), np.maximum(one.max(axis=0), 0)] for one in bolts])
+            found[PRELOAD] = bolts[0] if len(bolts) == 1 else ONE_EACH_WAY * np.linalg.norm(ends, axis=0)
         corners = [np.log(one / about) for one in joints.corners if isinstance(one, np.ndarray)]
         if found.keys() >= BOTH and len(corners) == 4:
             found |= _together({name: found[name] for name in sorted(BOTH)}, np.stack(corners))
@@ -339,9 +364,6 @@ def _combined(
         found["waves"] = SCORE * np.sqrt(of_group(logs.var(axis=0, ddof=1)) + split) * ONE_EACH_WAY
     if case.study.assumes_scatter and all(state.ends and "scan" in state.ends for state in states):
         found["scan"] = np.log(np.stack([(state.ends or {})["scan"] for state in states], axis=1) / f)
-    if len(states) > 1 and np.ptp(ends := _preload_factors(case, known)[1]):
-        curve = about if isinstance(about, np.ndarray) else f
-        found["preload"] = _by_preload(case.loads, curve, ends)
     for name, sd in (("structure", structure_sd(case.study.uncertain)), ("mode", mode_sd(case.study.uncertain))):
         found[name] = SCORE * sd * ONE_EACH_WAY * np.ones(f.shape)
     if parts is not None:
@@ -373,21 +395,3 @@ def _together(alone: Mapping[str, Array], corners: Array) -> dict[str, Array]:
     moves = np.minimum(down, up) > 0
     down, up = (np.where(moves, end / np.where(moves, one, 1.0), 1.0) for end, one in ((-low, down), (high, up)))
     return {name: np.where(one < 0, down * one, up * one) for name, one in alone.items()}
-
-
-def _preload_factors(case: Case, known: Known) -> tuple[Array, tuple[float, float]]:
-    """Median factors on the preloads (b,), and 5 and 95 % of one on all of these: the widest where they differ."""
-    low, middle, high = np.stack([force_factors(known, case.study, k, LEVELS) for k in range(len(case.study.bolts))]).T
-    return middle, (float((low / middle).min()), float((high / middle).max()))
-
-
-def _by_preload(loads: Array, frequencies: Array, factors: tuple[float, float]) -> Array:
-    """Offsets of ln f (2, loads, m) by both ends from the median: linear in ln F between loads and beyond them."""
-    x, y = np.log(loads), np.log(frequencies)
-    out = []
-    for factor in factors:
-        at = x + np.log(factor)
-        right = np.clip(np.searchsorted(x, at), 1, len(x) - 1)
-        share = (at - x[right - 1]) / (x[right] - x[right - 1])
-        out.append((1 - share)[:, None] * y[right - 1] + share[:, None] * y[right] - y)
-    return np.stack(out)

@@ -48,14 +48,14 @@ def frequencies_of(
 ) -> list[Array | NotConverged]:
     """Frequencies [Hz] (loads, m) of each change, or why it has none.
 
-    The basis is made for the first and the last load of all of them. Frequencies are in the order of the modes of the
-    states, each that of the mode whose shape it has, by way of the change whose place `after` has: two small steps mix
-    modes less than a large one. Where joints have carried more before, a change makes of them what it makes of first
-    loading, relative.
+    The basis is made for the least and the greatest load of all of them. Frequencies are in the order of the modes of
+    the states, each that of the mode whose shape it has, by way of the change whose place `after` has: two small steps
+    mix modes less than a large one. Where joints have carried more before, a change makes of them what it makes of
+    first loading, relative.
     """
     if not changes:
         return []
-    at = sorted({0, int(np.argmax([state.load for state in states]))})
+    at = sorted({int(end([state.load for state in states])) for end in (np.argmin, np.argmax)})
     last, structure = states[-1], case.structure
     reduction = Reduction.about(
         structure,

@@ -2,6 +2,7 @@
 
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from math import inf
 from typing import TYPE_CHECKING, Any, Self, cast
 
@@ -128,6 +129,8 @@ class BoltedStructure(Summary):
             dowels=self.dowels,
         )
         if self.assembled is None or not self.assembled.same(assembled):
+            if fault := overlapping(self.mesh, {joint.name: joint.faces for joint in self.joints}):
+                raise InputError(fault)
             object.__setattr__(self, "assembled", assembled)
 
     @property
@@ -421,6 +424,27 @@ def nothing_moves(joint: str, shared: Sequence[str]) -> str:
         f"joint {joint!r}: every node of its face {shared[0]!r} is one with another part, so that nothing moves there; "
         "leave the joint out, or name the face on both sides in the mesh file"
     )
+
+
+def overlapping(mesh: Mesh, joints: Mapping[str, tuple[str, str]]) -> str:
+    """What there is to say of two joints, name -> faces, with the same sides on both of their faces; "" without any."""
+
+    def shared(one: str, other: str) -> bool:
+        if mesh.face_part[one] != mesh.face_part[other]:
+            return False
+        if one == other or not len(np.intersect1d(mesh.face_nodes(one), mesh.face_nodes(other))):
+            return one == other
+        sides = [{tuple(sorted(side)) for block in mesh.face(name) for side in block.tolist()} for name in (one, other)]
+        return bool(sides[0] & sides[1])
+
+    for (one, mine), (other, theirs) in combinations(joints.items(), 2):
+        if all(any(shared(face, its) for its in theirs) for face in mine):
+            faces = ", ".join(map(repr, (*mine, *theirs)))
+            return (
+                f"joints {one!r} and {other!r} join some of the same sides of their faces {faces}, which would count "
+                "twice; leave one out, or give faces that do not overlap"
+            )
+    return ""
 
 
 def seat_apart(bolt: SolidBolt, faces: Container[str]) -> str:

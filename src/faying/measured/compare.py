@@ -226,11 +226,16 @@ def compare_modes(
 
 
 def _left_out(test: ModeSet, points: PointMap) -> list[str]:
-    """Say which points of the test are not compared."""
+    """Say which points of the test are not compared, and which are on a joint."""
     notes = []
     nowhere = sorted({d.point for d in test.dofs} - set(test.positions))
     if test.positions and nowhere:
         notes.append(f"points {', '.join(map(str, nowhere))} have modes but no position; they are left out")
+    if points.seams:
+        on = ", ".join(map(str, points.seams))
+        notes.append(
+            f"points {on} lie on nodes of two parts, of which one is taken; MAC suffers where the other is meant"
+        )
     if points.missing:
         far = ", ".join(f"{p} ({d * 1e3:.3g} mm away)" for p, d in points.missing.items())
         notes.append(f"points farther than {points.tolerance * 1e3:.3g} mm from the model, left out: {far}")

@@ -13,6 +13,8 @@ from faying.geometry.mesh_facts import nearest_places
 from faying.measured.frf import Position
 from faying.typing import Array, Index
 
+SAME_PLACE = 1e-7  # of the size of a model: nodes nearer than that are those of two parts that meet
+
 
 @dataclass(frozen=True, kw_only=True)
 class Transform:
@@ -77,7 +79,8 @@ class PointMap:
     """Where the points of a test lie on a model.
 
     nodes: point -> nearest node; corners, weights: point -> three nodes and their weights, between which the model's
-    motion is interpolated there; distance: point -> distance from the model [m]; missing: points too far from it.
+    motion is interpolated there; distance: point -> distance from the model [m]; missing: points too far from it;
+    seams: points whose node lies on one of another part, which moves otherwise.
     """
 
     nodes: Mapping[int, int]
@@ -87,6 +90,7 @@ class PointMap:
     missing: Mapping[int, float]
     transform: Transform
     tolerance: float
+    seams: tuple[int, ...] = ()
 
 
 def map_points(
@@ -118,7 +122,8 @@ def map_points(
         )
     labels = list(positions)
     there = transform.points([positions[k] for k in labels])
-    nearest = KDTree(cloud).query(there)[1]
+    tree = KDTree(cloud)
+    nearest = tree.query(there)[1]
     corners, weights = _on_triangles(there, cloud, nearest, np.asarray(triangles, np.int64).reshape(-1, 3))
     distance = np.linalg.norm(np.einsum("pc,pcx->px", weights, cloud[corners]) - there, axis=1)
     here = distance <= limit
@@ -138,6 +143,7 @@ def map_points(
         missing={labels[k]: float(distance[k]) for k in np.flatnonzero(~here)},
         transform=transform,
         tolerance=limit,
+        seams=tuple(labels[k] for k in kept if len(tree.query_ball_point(cloud[nearest[k]], SAME_PLACE * size)) > 1),
     )
 
 

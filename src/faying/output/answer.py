@@ -76,7 +76,7 @@ def lead(result: Result) -> str:
     if len(f) == 1:
         words = [f"{where} the structure has one elastic mode of interest, at {_hertz(f[0])} Hz."]
     else:
-        words = [f"{where} the lowest {len(f)} elastic modes are from {_hertz(f[0])} to {_hertz(f[-1])} Hz."]
+        words = [f"{where} the lowest {len(f)} elastic modes are from {_hertz(f.min())} to {_hertz(f.max())} Hz."]
     if interval is not None:
         ends = _interval(float(interval.low[-1, 0]), float(interval.high[-1, 0])).replace("..", "and")
         words.append(f"The first is between {ends} Hz (5 to 95 %).")

@@ -111,7 +111,9 @@ class RunRecord(Recorded):
 
     title: str
     loads: Array = variable("load", "N", "preload of the first bolt", "preload")
-    carried: Array | None = optional("load", "N", "greatest preload of the first bolt before, 0 on first loading")
+    carried: Array | None = optional(
+        "load", "N", "greatest preload of the first bolt before, 0 on first loading", shown="greatest preload before"
+    )
     settled: bool = False
     frequencies: Array = variable("load mode", "Hz", "frequency", "modes/frequency", shown="frequency")
     loss_factors: Array = variable(

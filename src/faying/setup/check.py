@@ -18,7 +18,7 @@ from faying.geometry.face_facts import FaceFacts, GeometryFacts, read_facts
 from faying.geometry.face_triangles import FaceTriangles
 from faying.geometry.mesh_facts import mesh_facts
 from faying.geometry.selectors import TOUCHING, chosen, points_of
-from faying.joint.bolted import nothing_moves, seat_apart
+from faying.joint.bolted import nothing_moves, overlapping, seat_apart
 from faying.joint.joint import each_pair_once
 from faying.joint.strength import bolt_notes, material_notes
 from faying.memory import available
@@ -202,6 +202,8 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     for key, what, point in named_points(study):
         found.tried("point", key, partial(on_structure, what, point, made or facts))
     if made is not None:
+        if text := overlapping(made, {joint.name: joint.faces for joint in study.joints}):
+            found.add("fault", "contact", text, "joint")
         _laid(study, made, surfaces, found)
     expected = _expected(study, facts, named, made, found)
     return Checked(findings=tuple(found.out), expected=expected)

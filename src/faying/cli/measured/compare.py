@@ -105,8 +105,7 @@ def command(
     from faying.output import report_measured, table
     from faying.result import Result
 
-    wanted = units.parse(load, "N", name="--load") if load else None
-    model = Result.load(result).modes_at(wanted, source=str(result))
+    model = Result.load(result).modes_at(load, source=str(result))
     distance = units.parse(tolerance, "m", name="--tolerance") if tolerance else None
     tested = read_test(other, **options)
     if tested.identified:

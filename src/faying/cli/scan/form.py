@@ -51,4 +51,6 @@ def text(name: str, fit: Any) -> str:
         "[joint.form]",
     ]
     shapes = ("crown_along", "crown_across", "twist")
-    return "\n".join([*lines, *(f'{shape} = "{show(getattr(fit, shape), "m", digits=3)}"' for shape in shapes)])
+    lines += [f'{shape} = "{show(getattr(fit, shape), "m", digits=3)}"' for shape in shapes]
+    seen = "of a gap whose axes see the first face from inside" if fit.is_gap else "where it is the second face"
+    return "\n".join([*lines, f"twist counts as seen from outside the first face of a joint: change its sign {seen}"])

@@ -113,12 +113,21 @@ def read(path: Path) -> Scan | Profile:
             raise ReadError(f"{path}: main.xml is not well-formed ({fault}); the file is damaged") from fault
         heights, missing = _heights(archive, root, path)
         kind = _text(root, "Record1", "FeatureType") or "SUR"
+        if kind not in ("SUR", "PRF") or (kind == "PRF" and len(heights) > 1):
+            size = f"{heights.shape[1]} x {len(heights)} points"
+            raise ReadError(
+                f"{path}: FeatureType {kind} of {size}; it is a map (SUR), or one profile (PRF), that is read"
+            )
         offset = _number(root, path, "Record1", "Axes", "CZ", "Offset", default=0.0)
         whole = _text(root, "Record1", "Axes", "CZ", "DataType") in ("I", "L")
         step = _number(root, path, "Record1", "Axes", "CZ", "Increment", default=None if whole else 1.0)
         z = heights.astype(float) * (step if whole else 1.0) + offset
         z[missing | ~np.isfinite(z)] = np.nan
-    notes = () if whole or step in (0, 1) else (f"{path}: heights in metres; the increment {step:g} is for integers",)
+    said = "" if whole or step in (0, 1) else f"heights in metres; the increment {step:g} is for integers"
+    turned = [one.text for one in root.findall("{*}Record1/{*}Axes/{*}Rotation/*")]
+    plain = "".join((text or "").strip().rstrip("0").rstrip(".") or "0" for text in turned)
+    also = "" if plain in ("", "100010001") else f"its axes are stated to be turned by {turned}, which is not applied"
+    notes = tuple(f"{path}: {one}" for one in (said, also) if one)
     makers = [_text(root, "Record2", "Instrument", part) for part in ("Manufacturer", "Model")]
     instrument = Instrument(name=" ".join(filter(None, makers)))
     spacing = [_spacing(root, path, axis) for axis in ("CX", "CY")[: 1 if kind == "PRF" else 2]]
