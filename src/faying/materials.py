@@ -192,13 +192,17 @@ class ContactPair:
         """K = 0.454 + 0.41 nu of the softer body [-]."""
         return 0.454 + 0.41 * self.softer.nu
 
-    @cached_property
+    @property
+    def known_friction(self) -> float | None:
+        """Static friction coefficient [-]: the smaller of those given; None where none is."""
+        return min((m.friction for m in (self.first, self.second) if m.friction is not None), default=None)
+
+    @property
     def friction(self) -> float:
-        """Static friction coefficient [-]: the smaller of those given."""
-        given = [m.friction for m in (self.first, self.second) if m.friction is not None]
-        if not given:
+        """The same. Raises InputError where none is given."""
+        if (found := self.known_friction) is None:
             raise InputError("no friction coefficient is known for the pair; give one to either material")
-        return min(given)
+        return found
 
 
 class Catalogue(Mapping[str, Material]):

@@ -193,6 +193,10 @@ def test_no_command_takes_a_path_that_no_file_can_have(command, name, said):
     [
         (["--z-unit", "um", "--D", "2.39"], "--z-unit: with --scan FILE alone"),
         (["--method", "structure", "--D", "2.39"], "--method: with --scan FILE alone"),
+        (
+            ["--scan", str(EXAMPLES / "t-specimen" / "milled.x3p"), "--G", "1e-11 m"],
+            "G beside --scan: D, G and scan_area",
+        ),
         (["--D", "2.39", "--to", "abaqus", "--unit", "mm", "--json"], "--json: --to prints one law on first loading"),
     ],
 )

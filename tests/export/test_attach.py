@@ -143,6 +143,14 @@ def test_bent_faces_have_no_contact_table_and_flat_ones_do(tmp_path):
     assert len(notes) == 1
 
 
+def test_friction_of_a_contact_table_is_that_of_the_joint_or_of_its_materials(tmp_path):
+    """As the tables of a law alone have it; the deck says where no joint gives it."""
+    joint = attached(tmp_path, text=TEXT.replace('"p1.left"]\n', '"p1.left"]\nfriction = 0.3\n', 1)).deck.contact
+    assert (joint.friction, joint.given) == (0.3, True)
+    contact = attached(tmp_path).deck.contact
+    assert (contact.friction, contact.given) == (faying.CATALOGUE["45 steel"].friction, False)
+
+
 def test_pressure_from_our_preload(tmp_path):
     found = attached(tmp_path, "solve", preload="3 kN")
     assert found.pairs.area @ found.pairs.pressure == pytest.approx(3000, rel=1e-8)

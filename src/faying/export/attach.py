@@ -23,7 +23,7 @@ from faying.form.form import Form
 from faying.joint.joint_law import JointLaw
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.joint.preload_case import preload_index
-from faying.materials import Material
+from faying.materials import ContactPair, Material
 from faying.misuse import checked_call
 from faying.notes import percent
 from faying.study.keys.geometry import GeometryChoice, mesh_of
@@ -93,7 +93,7 @@ def _table(file: Path) -> tuple[Index, Array]:
 
 SMALLEST, LARGEST = 1e-7, 10.0  # areas of a joint [m2] beyond which the unit is doubted
 TOUCHING = 1e-6  # of the structure's size: a gap above it is noted
-UNKNOWN_FRICTION = 0.2
+UNKNOWN_FRICTION = 0.2  # where neither the joint nor its materials say it
 STIFFER = 0.05  # of the joint's resistance to a turn: springs at nodes that exceed it by more are noted
 VALID = "validity: the law is within its validity range everywhere"
 
@@ -406,6 +406,9 @@ def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> 
     approach = np.array([law.approach(float(p)) for p in pressure])
     (k_n,), (k_t,) = law.stiffness(np.array([mean]))
     (loss_n,), _ = law.loss(np.array([mean]))
+    pair = getattr(law.model, "pair", None)
+    of_pair = pair.known_friction if isinstance(pair, ContactPair) else None
+    assumed = UNKNOWN_FRICTION if of_pair is None else of_pair
     return ContactProperty(
         approach=approach,
         pressure=pressure,
@@ -413,6 +416,6 @@ def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> 
         k_t=float(k_t),
         loss_n=float(loss_n),
         mean_pressure=mean,
-        friction=UNKNOWN_FRICTION if spec.friction is None else spec.friction,
+        friction=assumed if spec.friction is None else spec.friction,
         given=spec.friction is not None,
     )

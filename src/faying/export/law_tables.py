@@ -104,8 +104,7 @@ def _table(law: ContactLaw, system: UnitSystem, friction: float | None, pressure
         conducts = all(not m.is_rigid and m.conductivity is not None for m in (pair.first, pair.second))
         # W/m2 is N/(m s): pressure times speed
         conductance = heat_conductance(k_n, pair) * system.pressure * system.metre if conducts else None
-        if friction is None and any(m.friction is not None for m in (pair.first, pair.second)):
-            friction = pair.friction
+        friction = pair.known_friction if friction is None else friction
     return _Table(
         pressure=p * system.pressure,
         closure=np.array([joint.approach(float(one)) for one in p]) * system.metre,

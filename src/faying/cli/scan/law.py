@@ -231,6 +231,10 @@ def mates_of(options: dict[str, Any], kind: LawKind, pair: ContactPair) -> Mates
         name: FRACTAL[name].read(str(options[name]), name) for name in FRACTAL if options[name] is not None
     }
     if options["scan"] is not None:
+        if 0 < len(numbers) < len(FRACTAL):
+            raise InputError(
+                f"{', '.join(numbers)} beside --scan: D, G and scan_area are one answer; give all, or none"
+            )
         return Mates(faces_of(options, numbers), materials=pair)
     if len(numbers) < len(FRACTAL) or not (kind.label == "auto" or kind.takes(OF_NUMBERS, ())):
         return None
