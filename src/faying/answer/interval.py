@@ -42,6 +42,8 @@ MIN_DRAWS = 2  # that have a scatter
 PRELOAD = "preload"
 FORCES = ("factor", "preload")  # of a bolt, by which [uncertain] lists how far its preload scatters
 BOTH = {"law", "k_t/k_n"}  # act on the same springs: what they do together is no sum
+TRAINED = 4  # bolts that scatter apart up to which the basis is made for each; for more it is right to a thousandth
+MOVES = 0.1  # of what both do together: less by each alone says nothing of their shares
 GRID = 64  # equal shares of the probability of either: a quantile of both is right to a hundredth of the width
 
 
@@ -246,7 +248,7 @@ def _ends(case: Case, known: Known, middle: ChangedCase) -> dict[str, tuple[Chan
         who = "" if len(apart) == 1 else f" of {' and '.join(case.study.bolts[k].name for k in bolts)}"
         both = factors.copy(), factors.copy()
         both[0][bolts], both[1][bolts] = low[bolts], high[bolts]
-        first, second = (replace(middle, factor=one, trained=len(apart) == 1) for one in both)
+        first, second = (replace(middle, factor=one, trained=len(apart) <= TRAINED) for one in both)
         out[f"{PRELOAD}{who}"] = first, second
     return out
 
@@ -391,7 +393,14 @@ def _together(alone: Mapping[str, Array], corners: Array) -> dict[str, Array]:
     share = np.stack([np.maximum(-scores, 0.0), 1 - np.abs(scores), np.maximum(scores, 0.0)])
     values = np.einsum("ia,jb,ij...->ab...", share, share, known).reshape(GRID**2, *law.shape[1:])
     low, high = np.quantile(values, LEVELS[::2], axis=0)
-    down, up = (np.hypot(*(np.maximum(sign * one, 0.0).max(axis=0) for one in (law, ratio))) for sign in (-1, 1))
-    moves = np.minimum(down, up) > 0
-    down, up = (np.where(moves, end / np.where(moves, one, 1.0), 1.0) for end, one in ((-low, down), (high, up)))
-    return {name: np.where(one < 0, down * one, up * one) for name, one in alone.items()}
+    out = {name: np.array(one) for name, one in alone.items()}
+    for sign, end in ((-1, np.maximum(-low, 0.0)), (1, np.maximum(high, 0.0))):
+        sides = [np.maximum(sign * one, 0.0).max(axis=0) for one in (law, ratio)]
+        own = np.hypot(*sides)
+        # where neither moves it this way by itself, both together do: the law has it all
+        share = np.where(own > MOVES * end, sides[0] / np.where(own > 0, own, 1.0), 1.0)
+        for name, part in (("law", share), ("k_t/k_n", np.sqrt(1 - share**2))):
+            which = np.argmax(alone[name], axis=0)  # the end that moves it up most; the other one moves it down
+            which = which if sign > 0 else 1 - which
+            np.put_along_axis(out[name], which[None], (sign * end * part)[None], axis=0)
+    return out

@@ -26,7 +26,7 @@ NO_SLIP = 0.05  # of the least damping at rest: a mode with less slip at the gre
 SLIGHT = 0.1  # of the damping at rest: a curve that begins with more slip goes down first, in steps of
 DOWN = 8.0
 MOST_DOWN = 6  # at most so many of them
-MOST_SHORT = 6  # levels in a row that are not reached in one step: a joint that slides as a whole goes on for ever
+MOST_SHORT = 20  # levels in a row that are not reached in one step: a joint that slides as a whole goes on for ever
 NOTHING = 1e-3  # of the level of the mode that is shaken most: modes below it are taken as at rest
 
 
