@@ -213,6 +213,8 @@ def test_a_bolt_that_is_not_listed_scatters_by_default_in_an_interval(tmp_path):
     listed = '[uncertain]\nbolt."2".factor = "1 +- 0.025"\n'
     (tmp_path / "study.toml").write_text(f"{head}{bolt.format(2)}{bolt.format(6)}{tail}{listed}")
     case = Case.of(Study.read(tmp_path / "study.toml"))
-    middle, ends = _preload_factors(case, known_of(case))
+    low, middle, high = _preload_factors(case, known_of(case))
     assert middle == pytest.approx([1, 1], abs=1e-12)
-    assert ends == pytest.approx((1 - 0.14 * SCORE, 1 + 0.14 * SCORE), abs=1e-4)
+    spread = SCORE * np.array([0.025, 0.14])
+    assert low == pytest.approx(1 - spread, abs=1e-4)
+    assert high == pytest.approx(1 + spread, abs=1e-4)
