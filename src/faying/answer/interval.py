@@ -7,7 +7,7 @@ from statistics import NormalDist
 import numpy as np
 
 from faying.case.case import Case
-from faying.case.changed import ChangedCase, can_change, frequencies_of
+from faying.case.changed import BETWEEN, ChangedCase, can_change, frequencies_of
 from faying.case.mesh_error import MeshError, elastic_modes
 from faying.case.part_tests import KnownParts
 from faying.case.scatter import (
@@ -400,7 +400,8 @@ def _together(alone: Mapping[str, Array], corners: Array) -> dict[str, Array]:
         # where neither moves it this way by itself, both together do: the law has it all
         share = np.where(own > MOVES * end, sides[0] / np.where(own > 0, own, 1.0), 1.0)
         for name, part in (("law", share), ("k_t/k_n", np.sqrt(1 - share**2))):
-            which = np.argmax(alone[name], axis=0)  # the end that moves it up most; the other one moves it down
-            which = which if sign > 0 else 1 - which
+            # the end that moves it up, the upper one unless the lower does by more than bases miss; the other, down
+            up = np.where(alone[name][0] > alone[name][1] + BETWEEN, 0, 1)
+            which = up if sign > 0 else 1 - up
             np.put_along_axis(out[name], which[None], (sign * end * part)[None], axis=0)
     return out
