@@ -17,6 +17,7 @@ from faying.case.scatter import (
     SCORE,
     Known,
     force_factors,
+    force_key,
     known_of,
     mode_sd,
     of_number,
@@ -40,7 +41,6 @@ from faying.units import show
 DRAWS = 4
 MIN_DRAWS = 2  # that have a scatter
 PRELOAD = "preload"
-FORCES = ("factor", "preload")  # of a bolt, by which [uncertain] lists how far its preload scatters
 BOTH = {"law", "k_t/k_n"}  # act on the same springs: what they do together is no sum
 TRAINED = 4  # bolts that scatter apart up to which the basis is made for each; for more it is right to a thousandth
 MOVES = 0.1  # of what both do together: less by each alone says nothing of their shares
@@ -259,10 +259,11 @@ def _preload_factors(case: Case, known: Known) -> Array:
 
 
 def _bolts_alike(case: Case, known: Known) -> list[list[int]]:
-    """Bolts whose preloads scatter by one factor: each that is listed by its name alone, the others together."""
-    own = {k for k, bolt in enumerate(case.study.bolts) for name in FORCES if f"bolt.{bolt.name}.{name}" in known}
-    rest = [k for k in range(len(case.study.bolts)) if k not in own]
-    return [[k] for k in sorted(own)] + [rest] * bool(rest)
+    """Bolts whose preloads scatter by one key: each with a key of its own before the others together."""
+    groups: dict[str, list[int]] = {}
+    for k, bolt in enumerate(case.study.bolts):
+        groups.setdefault(force_key(known, bolt.name), []).append(k)
+    return sorted(groups.values(), key=len)
 
 
 def _corners(case: Case, known: Known, middle: ChangedCase) -> list[ChangedCase]:
@@ -357,7 +358,7 @@ def _combined(
             found[PRELOAD] = bolts[0] if len(bolts) == 1 else ONE_EACH_WAY * np.linalg.norm(ends, axis=0)
         corners = [np.log(one / about) for one in joints.corners if isinstance(one, np.ndarray)]
         if found.keys() >= BOTH and len(corners) == 4:
-            found |= _together({name: found[name] for name in sorted(BOTH)}, np.stack(corners))
+            found |= _together({name: found[name] for name in BOTH}, np.stack(corners))
     if joints.band is not None:
         logs = np.log(joints.band.frequencies / f)
         mean = logs.mean(axis=0)
@@ -383,16 +384,18 @@ def _together(alone: Mapping[str, Array], corners: Array) -> dict[str, Array]:
     the ends and beyond them ln f goes with each normal score, and with the product of both in each quadrant.
 
     Args:
-        alone: Both ends of each by itself, k_t/k_n first (2, loads, m).
+        alone: Both ends of each by itself (2, loads, m), by the names in `BOTH`.
         corners: Both at their ends, those of the law first (4, loads, m).
     """
-    ratio, law = alone.values()
+    law, ratio = alone["law"], alone["k_t/k_n"]
     known = np.zeros((3, 3, *law.shape[1:]))
     known[::2, 1], known[1, ::2], known[::2, ::2] = law, ratio, corners.reshape(2, 2, *law.shape[1:])
     scores = np.array([NormalDist().inv_cdf((k + 0.5) / GRID) for k in range(GRID)]) / SCORE
-    share = np.stack([np.maximum(-scores, 0.0), 1 - np.abs(scores), np.maximum(scores, 0.0)])
-    values = np.einsum("ia,jb,ij...->ab...", share, share, known).reshape(GRID**2, *law.shape[1:])
+    weights = np.stack([np.maximum(-scores, 0.0), 1 - np.abs(scores), np.maximum(scores, 0.0)])
+    values = np.einsum("ia,jb,ij...->ab...", weights, weights, known).reshape(GRID**2, *law.shape[1:])
     low, high = np.quantile(values, LEVELS[::2], axis=0)
+    # the end that moves it up: the upper one, unless the lower does by more than bases miss; the other moves it down
+    up = {name: np.where(one[0] > one[1] + BETWEEN, 0, 1)[None] for name, one in alone.items()}
     out = {name: np.array(one) for name, one in alone.items()}
     for sign, end in ((-1, np.maximum(-low, 0.0)), (1, np.maximum(high, 0.0))):
         sides = [np.maximum(sign * one, 0.0).max(axis=0) for one in (law, ratio)]
@@ -400,8 +403,6 @@ def _together(alone: Mapping[str, Array], corners: Array) -> dict[str, Array]:
         # where neither moves it this way by itself, both together do: the law has it all
         share = np.where(own > MOVES * end, sides[0] / np.where(own > 0, own, 1.0), 1.0)
         for name, part in (("law", share), ("k_t/k_n", np.sqrt(1 - share**2))):
-            # the end that moves it up, the upper one unless the lower does by more than bases miss; the other, down
-            up = np.where(alone[name][0] > alone[name][1] + BETWEEN, 0, 1)
-            which = up if sign > 0 else 1 - up
-            np.put_along_axis(out[name], which[None], (sign * end * part)[None], axis=0)
+            which = up[name] if sign > 0 else 1 - up[name]
+            np.put_along_axis(out[name], which, (sign * end * part)[None], axis=0)
     return out

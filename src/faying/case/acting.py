@@ -14,7 +14,7 @@ from faying.fe.sides import face_centre
 from faying.joint.attachments import nearest_node
 from faying.joint.bolted import BoltedStructure
 from faying.joint.joint import known_face
-from faying.study.load import Displacement, Force, Load, no_expansion, not_held
+from faying.study.load import Displacement, Force, Load, no_expansion, not_held, not_there
 from faying.typing import Array
 from faying.units import show
 
@@ -158,10 +158,7 @@ def _heat(structure: BoltedStructure, changes: Mapping[str, float], what: str) -
             if name in names:
                 part = getattr(bolts[names.index(name)].bolt, "part", "")
                 raise InputError(f"{what}: bolt {name!r} is meshed; give the temperature of its part, {part!r}")
-            known = ", ".join(map(repr, (*mesh.parts, *names)))
-            raise InputError(
-                f"{what}: temperature of {name!r}, which is neither a part nor a bolt; give one of {known}"
-            )
+            raise InputError(not_there(what, name, (*mesh.parts, *names)))
     return force, longer, strains
 
 

@@ -33,7 +33,7 @@ from faying.study.keys.geometry import mesh_of
 from faying.study.keys.joint import JointChoice
 from faying.study.keys.law import LawChoice
 from faying.study.keys.surface import NO_SURFACE, Surface, SurfaceChoice
-from faying.study.load import Displacement, Force, Pressure, no_expansion, not_held
+from faying.study.load import Displacement, Force, Pressure, no_expansion, not_held, not_there
 from faying.study.study import Study
 from faying.study.vibration import held_still, not_along
 from faying.study.vibration import not_held as not_shaken
@@ -382,12 +382,11 @@ def _heated(study: Study) -> Iterator[tuple[str, str]]:
     known = [*study.parts, *(bolt.name for bolt in study.bolts)]
     for k, load in enumerate(study.load_cases, 1):
         for name in load.temperature:
-            what, key = f"load {load.name!r}: ", f"load[{k}].temperature"
+            what, key = f"load {load.name!r}", f"load[{k}].temperature"
             if name not in known:
-                words = f"temperature of {name!r}, which is neither a part nor a bolt; give one of "
-                yield key, f"{what}{words}{', '.join(map(repr, known))}"
+                yield key, not_there(what, name, known)
             elif name in study.parts and (material := study.materials[study.parts[name]]).expansion is None:
-                yield key, no_expansion(f"{what}part {name!r}", material.name)
+                yield key, no_expansion(f"{what}: part {name!r}", material.name)
 
 
 def structure_of(

@@ -138,14 +138,20 @@ def of_number(known: Known, joint: str, name: str) -> Distribution | None:
     return known.get(f"joint.{joint}.{name}") or known.get(f"joint.{name}")
 
 
+def force_key(known: Known, bolt: str) -> str:
+    """The key by which the force of a bolt scatters: its own, or that of all; "" where it does not."""
+    keys = (f"{owner}.{name}" for owner in (f"bolt.{bolt}", "bolt") for name in ("factor", "preload"))
+    return next((key for key in keys if key in known), "")
+
+
 def force_factors(known: Known, study: Study, bolt: int, shares: Array) -> Array:
     """Force of a bolt over the one that the study states [-], at shares of probability of any shape."""
-    for owner in (f"bolt.{study.bolts[bolt].name}", "bolt"):
-        if (factor := known.get(f"{owner}.factor")) is not None:
-            return factor.quantile(shares)
-        if (force := known.get(f"{owner}.preload")) is not None:  # of studies of one preload alone
-            return np.asarray(force.quantile(shares) / study.preloads[0].forces[bolt])
-    return np.ones_like(shares)
+    key = force_key(known, study.bolts[bolt].name)
+    if not key:
+        return np.ones_like(shares)
+    values = known[key].quantile(shares)
+    # a force itself: of studies of one preload alone
+    return values if key.endswith(".factor") else np.asarray(values / study.preloads[0].forces[bolt])
 
 
 def structure_sd(choice: UncertainChoice | None) -> float:

@@ -16,6 +16,7 @@ from faying.decks.deck import ContactProperty, JointDeck, UnitSystem, write
 from faying.decks.meshfile import last_element
 from faying.errors import InputError, ReadError
 from faying.export.condense import under_preload
+from faying.export.law_tables import friction_of
 from faying.fe.interface import Interface, join
 from faying.fe.mesh import Mesh
 from faying.fe.sides import face_centre
@@ -23,7 +24,7 @@ from faying.form.form import Form
 from faying.joint.joint_law import JointLaw
 from faying.joint.pairs import NodePairs, consistent, lumped
 from faying.joint.preload_case import preload_index
-from faying.materials import ContactPair, Material
+from faying.materials import Material
 from faying.misuse import checked_call
 from faying.notes import percent
 from faying.study.keys.geometry import GeometryChoice, mesh_of
@@ -406,9 +407,7 @@ def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> 
     approach = np.array([law.approach(float(p)) for p in pressure])
     (k_n,), (k_t,) = law.stiffness(np.array([mean]))
     (loss_n,), _ = law.loss(np.array([mean]))
-    pair = getattr(law.model, "pair", None)
-    of_pair = pair.known_friction if isinstance(pair, ContactPair) else None
-    assumed = UNKNOWN_FRICTION if of_pair is None else of_pair
+    known = (spec.friction, friction_of(law.model), UNKNOWN_FRICTION)
     return ContactProperty(
         approach=approach,
         pressure=pressure,
@@ -416,6 +415,6 @@ def _contact(law: JointLaw, spec: JointChoice, greatest: float, mean: float) -> 
         k_t=float(k_t),
         loss_n=float(loss_n),
         mean_pressure=mean,
-        friction=assumed if spec.friction is None else spec.friction,
+        friction=next(one for one in known if one is not None),
         given=spec.friction is not None,
     )

@@ -104,7 +104,6 @@ def _table(law: ContactLaw, system: UnitSystem, friction: float | None, pressure
         conducts = all(not m.is_rigid and m.conductivity is not None for m in (pair.first, pair.second))
         # W/m2 is N/(m s): pressure times speed
         conductance = heat_conductance(k_n, pair) * system.pressure * system.metre if conducts else None
-        friction = pair.known_friction if friction is None else friction
     return _Table(
         pressure=p * system.pressure,
         closure=np.array([joint.approach(float(one)) for one in p]) * system.metre,
@@ -112,8 +111,14 @@ def _table(law: ContactLaw, system: UnitSystem, friction: float | None, pressure
         at=at * system.pressure,
         secant=at / joint.approach(at) * system.density,
         shear=float(joint.stiffness(np.array([at]))[1][0]) * system.density,
-        friction=friction,
+        friction=friction_of(law) if friction is None else friction,
     )
+
+
+def friction_of(law: ContactLaw) -> float | None:
+    """Coefficient of friction of the materials of a law; None where it has none, or they do not say it."""
+    pair = getattr(law, "pair", None)
+    return pair.known_friction if isinstance(pair, ContactPair) else None
 
 
 def _keywords(table: _Table, head: list[str], name: str, program: str) -> str:

@@ -430,19 +430,21 @@ def overlapping(mesh: Mesh, joints: Mapping[str, tuple[str, str]]) -> str:
     """What there is to say of two joints, name -> faces, with the same sides on both of their faces; "" without any."""
 
     def shared(one: str, other: str) -> bool:
-        if mesh.face_part[one] != mesh.face_part[other]:
-            return False
-        if one == other or not len(np.intersect1d(mesh.face_nodes(one), mesh.face_nodes(other))):
+        if one == other or mesh.face_part[one] != mesh.face_part[other]:
             return one == other
-        sides = [{tuple(sorted(side)) for block in mesh.face(name) for side in block.tolist()} for name in (one, other)]
-        return bool(sides[0] & sides[1])
+        if not len(np.intersect1d(mesh.face_nodes(one), mesh.face_nodes(other))):
+            return False  # at once, where pads lie side by side
+        first, second = (
+            {tuple(sorted(side)) for block in mesh.face(face) for side in block.tolist()} for face in (one, other)
+        )
+        return bool(first & second)
 
-    for (one, mine), (other, theirs) in combinations(joints.items(), 2):
-        if all(any(shared(face, its) for its in theirs) for face in mine):
-            faces = ", ".join(map(repr, (*mine, *theirs)))
+    for (first, faces), (second, others) in combinations(joints.items(), 2):
+        if all(any(shared(face, other) for other in others) for face in faces):
+            listed = ", ".join(map(repr, (*faces, *others)))
             return (
-                f"joints {one!r} and {other!r} join some of the same sides of their faces {faces}, which would count "
-                "twice; leave one out, or give faces that do not overlap"
+                f"joints {first!r} and {second!r} join some of the same sides of their faces {listed}, which would "
+                "count twice; leave one out, or give faces that do not overlap"
             )
     return ""
 

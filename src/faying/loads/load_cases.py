@@ -15,8 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from faying.case.case import Progress
-from faying.case.scatter import preload_scatter
-from faying.distribution import Distribution
+from faying.case.scatter import of_number, preload_scatter, stated
 from faying.errors import InputError
 from faying.joint.preload_case import preload_index
 from faying.joint.state import State
@@ -103,15 +102,14 @@ class LoadScatter:
 
 def scatters_of(study: Study) -> list[LoadScatter]:
     """The preload of each bolt, and the friction of each joint of which [uncertain] says something."""
-    inputs = {} if study.uncertain is None else {one.key: one.distribution for one in study.uncertain.inputs}
-    out = []
+    known, out = stated(study.uncertain), []
     for k, bolt in enumerate(study.bolts):
         spread, origin = preload_scatter(study, bolt.name, choice_of(study.bolt_sheets, bolt.name))
         words = f"preload of {bolt.name} +-{spread:.0%} ({origin})"
         # the published range is two standard deviations each way
         out.append(LoadScatter(words=words, bolt=k, joint=None, end=1 - SIGMAS * spread / 2))
     for k, joint in enumerate(study.joints):
-        found: Distribution | None = inputs.get(f"joint.{joint.name}.friction") or inputs.get("joint.friction")
+        found = of_number(known, joint.name, "friction")
         if found is not None and joint.friction:
             low, high = found.quantile(np.array([END, 1 - END]))
             words = f"friction of {joint.name} {low:.3g} to {high:.3g}"

@@ -311,9 +311,7 @@ def _dowels(structure: BoltedStructure, motions: Sequence[Array]) -> dict[str, A
 def _stress(
     structure: BoltedStructure, rest: Array, motions: Sequence[Array], strains: Mapping[str, Mapping[str, float]]
 ) -> dict[str, Any]:
-    """The stress of each part under the preload and the motion [m] of each case, with its heat: where it is greatest,
-    and on the outer surface.
-    """
+    """The stress under preload and the motion [m] of each case, with its heat: greatest of each part, and outside."""
     mesh, outer = structure.mesh, structure.surface()
     greatest, fields = [], []
     for one, free in zip(motions, strains.values(), strict=True):
@@ -321,11 +319,10 @@ def _stress(
         greatest.append(greatest_stresses(found, mesh.points))
         fields.append(at_outline(found, len(mesh.points), outer.nodes))
     size, place, spread = (np.stack([one[k][..., 0] for one in greatest]) for k in range(3))
-    surface = OuterStress(
+    surface = OuterStress.on(
+        outer,
+        mesh.points,
         states=tuple(strains),
-        outline=mesh.points[outer.nodes],
-        triangles=outer.triangles,
-        part_of_triangle=outer.part_of_triangle,
         motion=np.stack([one.reshape(-1, 3)[outer.nodes] for one in motions]),
         **{name: np.concatenate([one[name] for one in fields]) for name in fields[0]},
     )

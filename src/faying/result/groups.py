@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from faying.fe.outline import Outline
 from faying.misuse import checked_call
 from faying.result.fields import Arrays, optional, variable
 from faying.result.vtk import grid_text, write_collection
@@ -50,6 +52,12 @@ class OuterStress(Arrays):
     tension: Array | None = optional("state node", "Pa", "greatest principal stress", "surface/", dtype="f4")
     compression: Array | None = optional("state node", "Pa", "least principal stress", "surface/", dtype="f4")
     motion: Array | None = optional("state node axis", "m", "displacement by the load", "surface/", dtype="f4")
+
+    @classmethod
+    def on(cls, outer: Outline, points: Array, **fields: Any) -> "OuterStress":
+        """The stress on an outer surface; points: nodes of the mesh (n, 3) [m]; fields: states, and what they are."""
+        at, of = outer.triangles, outer.part_of_triangle
+        return cls(outline=points[outer.nodes], triangles=at, part_of_triangle=of, **fields)
 
     def fields(self, state: int) -> dict[str, Array]:
         """What is known of one state at the nodes, by name and unit."""

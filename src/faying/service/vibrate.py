@@ -30,6 +30,7 @@ from faying.typing import Array, Complex
 # of what is printed, 3 sigma or the amplitude: where margins are taken, and how far the curve of a mode is marched; one
 # cycle of random vibration in 90 exceeds it
 PEAKS = {"random": 3.0, "sine": 1.0}
+STATES = {"random": {"1 sigma": 1.0, "3 sigma": 3.0}, "sine": {"amplitude": 1.0}}  # whose stress is recorded
 ANGLES = 24  # round a bolt at which its stress is looked at: of a sine between two of them 0.2 % is missed
 LINES, NEAR_LINES = 300, 12  # frequencies of a curve over the band, and on either side of each resonance
 AROUND, SAMPLES = (0.05, 3.0), 15  # levels at which a mode's damping is drawn, over the one that it reaches
@@ -368,7 +369,7 @@ def _record(
         curve = sets.best[k - 1]
         reach[k - 1] = curve.amplitudes.max(initial=0.0) * curve.speed**2 * excited.greatest[elastic][k - 1]
     levels, damping = _curves(given, sets.best, found)
-    outer = structure.surface()
+    outer, states = structure.surface(), STATES[excitation.kind]
     recorded = declared(VibrationResponse).keys() - {"damage"}  # that of one second, or of one sweep
     return VibrationResponse(
         title=base.title,
@@ -382,12 +383,11 @@ def _record(
         joints=tuple(joint.name for joint in structure.joints),
         parts=tuple(structure.mesh.parts),
         part_stress_place=place,
-        surface=OuterStress(
-            states=("1 sigma", "3 sigma") if excitation.kind == "random" else ("amplitude",),
-            outline=structure.mesh.points[outer.nodes],
-            triangles=outer.triangles,
-            part_of_triangle=outer.part_of_triangle,
-            von_mises=np.outer((1, 3) if excitation.kind == "random" else (1,), stress[outer.nodes]),
+        surface=OuterStress.on(
+            outer,
+            structure.mesh.points,
+            states=tuple(states),
+            von_mises=np.outer(list(states.values()), stress[outer.nodes]),
         ),
         direction=np.array(excitation.direction),
         input_frequency=excitation.table.frequencies,

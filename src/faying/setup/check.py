@@ -190,8 +190,9 @@ def check(path: str | Path, *, mesh: bool = True) -> Checked:
     for joint in study.joints:
         if text := nothing_moves(joint.name, [face for face in joint.faces if face in shared]):
             found.add("fault", "contact", text, f"joint[{joint.number}].faces")
-    held = set() if ready is None else {face for face in ready.faces if ready.is_shared(face, wholly=False)}
-    sketch = _bolts(sketch, found, held)
+    seats = {face for bolt in study.bolts for face in bolt.faces}
+    bonded = set() if ready is None else {face for face in seats if ready.is_shared(face, wholly=False)}
+    sketch = _bolts(sketch, found, bonded)
     _dowels(sketch, found)
     surfaces = _surfaces(study, found)
     for name, test in study.part_tests.items():
@@ -407,14 +408,14 @@ def _placed(bolt: Bolt | SolidBolt, mesh: FaceTriangles) -> BoltPlace | SolidPla
     return SolidPlace.of(bolt, mesh) if isinstance(bolt, SolidBolt) else bolt.placed(mesh)
 
 
-def _bolts(sketch: Sketch, found: _Findings, held: set[str]) -> Sketch:
+def _bolts(sketch: Sketch, found: _Findings, bonded: set[str]) -> Sketch:
     """Bolts in their places: seats that look away from each other, axes in their holes, forces that they bear.
 
-    held: faces of which some sides are of another part, too.
+    bonded: seats of which some sides are of another part, too.
     """
     places: list[BoltPlace | SolidPlace] = []
     study = sketch.study
-    met = held.union(*(joint.faces for joint in (*study.joints, *study.bonds)), (one.face for one in study.supports))
+    met = bonded.union(*(joint.faces for joint in (*study.joints, *study.bonds)), (one.face for one in study.supports))
     well: dict[str, list[tuple[str, str]]] = {}  # what is said -> bolts and keys of which it is
     for k, bolt in enumerate(study.bolts, 1):
         made = found.tried("bolt", f"bolt[{k}].{'at' if bolt.at else 'faces'}", partial(_placed, bolt, sketch.mesh))

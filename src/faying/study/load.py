@@ -1,6 +1,6 @@
 """Load cases: what acts on a preloaded structure."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from faying.checks import number
@@ -98,6 +98,12 @@ class Displacement:
     def __init__(self, face: str, displacement: Sequence[float | str]) -> None:
         object.__setattr__(self, "face", face)
         object.__setattr__(self, "displacement", vector(displacement, "m", f"displacement of {face!r}"))
+
+
+def not_there(what: str, name: str, known: Iterable[str]) -> str:
+    """That something is heated which is neither a part nor a bolt."""
+    listed = ", ".join(map(repr, known))
+    return f"{what}: temperature of {name!r}, which is neither a part nor a bolt; give one of {listed}"
 
 
 def no_expansion(what: str, material: str) -> str:

@@ -28,7 +28,7 @@ from faying.study.keys.joint import JointChoice, read_joints
 from faying.study.keys.law import LAW, LawChoice
 from faying.study.keys.load import read_loads
 from faying.study.keys.material import PartTestChoice, read_materials, read_parts
-from faying.study.keys.solution import ResponseChoice, read_modes, read_order
+from faying.study.keys.solution import ResponseChoice, read_modes, read_order, read_response
 from faying.study.keys.support import read_mass, read_support
 from faying.study.keys.surface import SurfaceChoice
 from faying.study.keys.tables import STUDY
@@ -264,7 +264,7 @@ class Study(Summary):
         dowels = read_dowels(top.tables("dowel"), materials)
         modes = top.inner("modes", read_modes) or ModesChoice()
         order = top.inner("tightening", lambda table: read_order(table, names))
-        response, parts_loss = top.inner("response", ResponseChoice.of) or (None, 0.0)
+        response, parts_loss = top.inner("response", read_response) or (None, 0.0)
         test, hammer = read_test(top, max(forces, key=len, default=(0.0,)))
         geometry = _with_selectors(geometry, faults)
         count = max(map(len, forces), default=1)

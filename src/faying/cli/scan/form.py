@@ -52,5 +52,5 @@ def text(name: str, fit: Any) -> str:
     ]
     shapes = ("crown_along", "crown_across", "twist")
     lines += [f'{shape} = "{show(getattr(fit, shape), "m", digits=3)}"' for shape in shapes]
-    seen = "of a gap whose axes see the first face from inside" if fit.is_gap else "where it is the second face"
-    return "\n".join([*lines, f"twist counts as seen from outside the first face of a joint: change its sign {seen}"])
+    where = "of a gap whose axes see the first face from inside" if fit.is_gap else "where it is the second face"
+    return "\n".join([*lines, f"twist counts as seen from outside the first face of a joint: change its sign {where}"])

@@ -65,7 +65,7 @@ class BoltSheetChoice:
         return self.curve is None and self.fatigue == "vdi" and self.rolled == "after"
 
     def fatigue_curve(self, diameter: float | None) -> FatigueCurve | None:
-        """The curve of its fatigue, before what its force changes; None where it hangs on a diameter [m] not known."""
+        """The curve of its fatigue, before what its force changes; None where it needs a diameter [m] and has none."""
         if self.curve is not None or diameter is None:
             return self.curve
         return FatigueCurve.iec(diameter) if self.fatigue == "iec" else FatigueCurve.vdi(diameter)

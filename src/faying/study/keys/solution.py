@@ -40,17 +40,17 @@ class ResponseChoice:
     last: float
     points: int
 
-    @classmethod
-    def of(cls, table: Table) -> "tuple[ResponseChoice, float]":
-        """Read [response], and the loss factor of the parts [-], which is theirs whether or not a response is found."""
-        first, last = table.get("from"), table.get("to")
-        if first is not None and last is not None and not first < last:
-            table.faults.add(f"response: from = {first:g} Hz must be below to = {last:g} Hz")
-        inputs, outputs = (
-            tuple((one.get("point"), one.get("direction")) for one in table.tables(key)) for key in ("input", "output")
-        )
-        choice = cls(inputs=inputs, outputs=outputs, first=first, last=last, points=table.get("points"))
-        return choice, table.get("structural_loss")
+
+def read_response(table: Table) -> tuple[ResponseChoice, float]:
+    """Read [response], and the loss factor of the parts [-], which is theirs whether or not a response is found."""
+    first, last = table.get("from"), table.get("to")
+    if first is not None and last is not None and not first < last:
+        table.faults.add(f"response: from = {first:g} Hz must be below to = {last:g} Hz")
+    inputs, outputs = (
+        tuple((one.get("point"), one.get("direction")) for one in table.tables(key)) for key in ("input", "output")
+    )
+    choice = ResponseChoice(inputs=inputs, outputs=outputs, first=first, last=last, points=table.get("points"))
+    return choice, table.get("structural_loss")
 
 
 def read_order(table: Table, names: Sequence[str]) -> tuple[int, ...] | None:

@@ -123,11 +123,13 @@ def read(path: Path) -> Scan | Profile:
         step = _number(root, path, "Record1", "Axes", "CZ", "Increment", default=None if whole else 1.0)
         z = heights.astype(float) * (step if whole else 1.0) + offset
         z[missing | ~np.isfinite(z)] = np.nan
-    said = "" if whole or step in (0, 1) else f"heights in metres; the increment {step:g} is for integers"
-    turned = [one.text for one in root.findall("{*}Record1/{*}Axes/{*}Rotation/*")]
-    plain = "".join((text or "").strip().rstrip("0").rstrip(".") or "0" for text in turned)
-    also = "" if plain in ("", "100010001") else f"its axes are stated to be turned by {turned}, which is not applied"
-    notes = tuple(f"{path}: {one}" for one in (said, also) if one)
+    increment = "" if whole or step in (0, 1) else f"heights in metres; the increment {step:g} is for integers"
+    rotation = [one.text for one in root.findall("{*}Record1/{*}Axes/{*}Rotation/*")]
+    plain = "".join((text or "").strip().rstrip("0").rstrip(".") or "0" for text in rotation)
+    turned = (
+        "" if plain in ("", "100010001") else f"its axes are stated to be turned by {rotation}, which is not applied"
+    )
+    notes = tuple(f"{path}: {one}" for one in (increment, turned) if one)
     makers = [_text(root, "Record2", "Instrument", part) for part in ("Manufacturer", "Model")]
     instrument = Instrument(name=" ".join(filter(None, makers)))
     spacing = [_spacing(root, path, axis) for axis in ("CX", "CY")[: 1 if kind == "PRF" else 2]]
