@@ -159,12 +159,13 @@ def test_a_joint_that_slips_has_one_answer(study):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("example", EXAMPLES, ids=str)
-def test_every_example_has_one_answer(example, tmp_path, request):
-    if example.parts[1] == "solid-bolt":
-        reason = "in one draw of waves two modes are as like mode 2: a basis of each engine follows either"
-        request.applymarker(pytest.mark.xfail(reason=reason))
+def test_every_example_has_one_answer(example, tmp_path):
     study = Study.read(copied(ROOT / example, tmp_path / "examples"))
-    agree(run(study), run(study, engine="direct"))
+    found = [run(study), run(study, engine="direct")]
+    if example.parts[1] == "solid-bolt":
+        # in one draw of waves two modes are as like mode 2, and the basis of each engine follows either
+        found = [replace(one, waves=None, interval=None) for one in found]
+    agree(*found)
 
 
 def test_an_engine_of_another_name_is_refused(study):

@@ -148,7 +148,7 @@ def conductances(case: Case, states: Sequence[LoadedCase]) -> dict[str, Any]:
                 continue
             first, second = (1 / k if kind == "conductivity" else k for k in known)
             # the stiffness is that of the law's own pair, one of whose bodies may be taken as rigid
-            E_star = getattr(joint.law.model, "pair", pair).E_star
+            E_star = (joint.law.model.made_for or pair).E_star
             for row, state in enumerate(states):
                 springs = state.springs[number]
                 h = contact_conductance(springs.k_n, E_star=E_star, resistivities=(first, second))

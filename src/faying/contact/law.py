@@ -130,6 +130,11 @@ class ContactLaw(Summary, ABC):
         """Whether the law is made from the materials that meet; one that was measured is not."""
         return cls._has("pair")
 
+    @property
+    def made_for(self) -> ContactPair | None:
+        """The materials that the law was made from; None of one that was measured."""
+        return vars(self).get("pair")
+
     @classmethod
     def required(cls) -> tuple[str, ...]:
         """The entries without which there is no law."""
@@ -193,9 +198,8 @@ class ContactLaw(Summary, ABC):
         rows = {"source": self.source}
         numbers = [_entry(name, getattr(self, name, None), p) for name, p in self.parameters.items()]
         rows["parameters"] = ", ".join(filter(None, numbers)) or "none"
-        pair = getattr(self, "pair", None)
-        if isinstance(pair, ContactPair):
-            rows["materials"] = f"{pair.first.name} on {pair.second.name}"
+        if self.made_for is not None:
+            rows["materials"] = f"{self.made_for.first.name} on {self.made_for.second.name}"
         rows["covers"] = self._reach()
         rows["valid for"] = self.validity
         rows["assumes"] = "; ".join(self._assumed()) or "nothing but its parameters"

@@ -10,7 +10,6 @@ from faying.contact.conductance import heat_conductance
 from faying.contact.law import ContactLaw
 from faying.decks.deck import UnitSystem
 from faying.joint.joint_law import JointLaw
-from faying.materials import ContactPair
 from faying.typing import Array
 
 PROGRAMS = ("abaqus", "calculix")
@@ -98,9 +97,9 @@ def _table(law: ContactLaw, system: UnitSystem, friction: float | None, pressure
     k_n, _ = joint.stiffness(p, tabulated=True)
     wanted = float(p[len(p) // 2]) if pressure is None else pressure
     at = number(wanted, "pressure", "Pa", least=p[0], greatest=p[-1], ends="[]")
-    pair = getattr(law, "pair", None)
+    pair = law.made_for
     conductance = None
-    if isinstance(pair, ContactPair):
+    if pair is not None:
         conducts = all(not m.is_rigid and m.conductivity is not None for m in (pair.first, pair.second))
         # W/m2 is N/(m s): pressure times speed
         conductance = heat_conductance(k_n, pair) * system.pressure * system.metre if conducts else None
@@ -117,8 +116,7 @@ def _table(law: ContactLaw, system: UnitSystem, friction: float | None, pressure
 
 def friction_of(law: ContactLaw) -> float | None:
     """Coefficient of friction of the materials of a law; None where it has none, or they do not say it."""
-    pair = getattr(law, "pair", None)
-    return pair.known_friction if isinstance(pair, ContactPair) else None
+    return None if law.made_for is None else law.made_for.known_friction
 
 
 def _keywords(table: _Table, head: list[str], name: str, program: str) -> str:

@@ -149,9 +149,9 @@ def known_face(mesh: Mesh, face: str, what: str) -> None:
 
 def _material_notes(name: str, law: ContactLaw, rough: Solid, other: Solid) -> list[Note]:
     """Say where the law was made for other materials than those of the parts, as far as it knows them."""
-    modulus = getattr(getattr(law, "pair", None), "E_star", None)
-    if modulus is None:
+    if law.made_for is None:
         return []
+    modulus = law.made_for.E_star
     here = 1 / sum((1 - m.nu**2) / m.E for m in (rough, other))
     if abs(modulus / here - 1) <= SAME_MODULUS:
         return []

@@ -358,7 +358,7 @@ def document(law: ContactLaw, response: Response) -> dict[str, Any]:
     """Everything that the command knows, as a tree for JSON; SI units."""
     from faying.contact.response import UNITS
 
-    pair = getattr(law, "pair", None)
+    pair = law.made_for
     parameters = law.parameters
     return {
         "law": law.name,
@@ -386,7 +386,7 @@ def table(law: ContactLaw, response: Response, h: Array | None = None) -> str:
         while given and len(line) + len(given[0]) < WIDTH:
             line += ", " + given.pop(0)
         lines.append(line)
-    pair = getattr(law, "pair", None)
+    pair = law.made_for
     if pair is not None:
         lines.append(f"  {pair.first.name} against {pair.second.name}, E* {show(pair.E_star, 'Pa')}")
     lines.append("")
