@@ -163,12 +163,12 @@ class ReducedEquilibrium(Equilibrium):
             if not k_t[:, 0, 1].any():  # nothing slides
                 matrix += joint_stiffness(interface.single, np.stack([k_n, k_t[:, 0, 0], k_t[:, 1, 1]], axis=1))
                 continue
-            local, k_n, k_t = interface.single.reshape(len(k_n), 3, -1), k_n.astype(np.float32), k_t.astype(np.float32)
+            local = interface.relative.reshape(len(k_n), 3, -1)
             scaled = np.empty_like(local)
             scaled[:, 0] = k_n[:, None] * local[:, 0]
             scaled[:, 1] = k_t[:, 0, 0, None] * local[:, 1] + k_t[:, 0, 1, None] * local[:, 2]
             scaled[:, 2] = k_t[:, 1, 0, None] * local[:, 1] + k_t[:, 1, 1, None] * local[:, 2]
-            matrix += interface.single.T @ scaled.reshape(interface.single.shape)
+            matrix += interface.relative.T @ scaled.reshape(interface.relative.shape)
         try:
             self._tangent = cho_factor(matrix)
         except LinAlgError:
